@@ -1,0 +1,44 @@
+# Two commands on a fresh machine: make demo, make test. Both make a virtual environment when there is none.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+
+.PHONY: help demo test check format data clean
+
+help:
+	@echo "make demo    skeleton of a sample cloud: files and a picture in out/demo"
+	@echo "make test    the test suite"
+	@echo "make check   lint, format and types"
+	@echo "make format  format the code"
+	@echo "make data    make the sample clouds in data/ anew"
+	@echo "make clean   remove the virtual environment and what was made"
+	@echo "PYTHON=python3.12 chooses the interpreter (3.10 to 3.13), VENV=DIR the environment"
+
+demo: $(INSTALLED)
+	$(BIN)/tiskel run data/banana.ply -o out/demo
+
+test: $(INSTALLED)
+	$(BIN)/pytest -q
+
+check: $(INSTALLED)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: $(INSTALLED)
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+data: $(INSTALLED)
+	data/make.sh $(BIN)/tiskel
+
+clean:
+	rm -rf $(VENV) out
+
+$(INSTALLED): pyproject.toml constraints.txt
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	touch $@

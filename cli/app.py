@@ -1,0 +1,88 @@
+"""The program ``tiskel``: its commands, and how it ends."""
+
+import os
+import signal
+import sys
+from types import FrameType
+from typing import Annotated, NoReturn
+
+import typer
+
+from tiskel.cli import console
+from tiskel.cli.contract import contract
+from tiskel.cli.convert import convert
+from tiskel.cli.doctor import doctor
+from tiskel.cli.info import info
+from tiskel.cli.run import run
+from tiskel.cli.shape import shape
+from tiskel.cli.skeleton import skeleton
+from tiskel.errors import TiskelError
+
+FAILED, INTERRUPTED = 1, 130
+
+app = typer.Typer(
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+    rich_markup_mode="markdown",
+    help="Curve skeletons of point clouds. Stages chain through pipes: "
+    "`tiskel contract in.ply | tiskel skeleton - -o out.ply`",
+)
+for command in (contract, skeleton, run, shape, convert, info, doctor):
+    app.command(no_args_is_help=command is not doctor)(command)
+
+
+class Interrupted(BaseException):
+    """Ctrl-C, past every handler that would turn it into something else."""
+
+
+def _interrupt(signum: int, frame: FrameType | None) -> NoReturn:
+    raise Interrupted
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from tiskel import __version__
+
+        typer.echo(f"tiskel {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop.")
+    ] = False,
+) -> None:
+    pass
+
+
+def main() -> None:
+    """Run the program; never show a traceback unless asked with --verbose."""
+    signal.signal(signal.SIGINT, _interrupt)
+    try:
+        app()
+    except TiskelError as error:
+        _fail(str(error), error)
+    except Interrupted:
+        console.errors.print("interrupted")
+        _leave(INTERRUPTED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the interpreter complains on its way out
+        _leave(FAILED)
+    except MemoryError as error:
+        _fail("out of memory; thin the cloud with --voxel or --sample", error)
+    except Exception as error:
+        _fail(f"unexpected {type(error).__name__}: {error}; run again with --verbose and report what it prints", error)
+
+
+def _fail(message: str, error: BaseException) -> NoReturn:
+    if console.session.verbose:
+        console.errors.print_exception()
+    console.log.error(message)
+    console.errors.print(f"error: {' '.join(message.split())}", markup=False)
+    _leave(FAILED)
+
+
+def _leave(code: int) -> NoReturn:
+    sys.exit(code)

@@ -1,0 +1,63 @@
+"""Decorators that give a command the options every command has, and the input options."""
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tiskel.cli import options
+from tiskel.cli.console import begin
+
+Command = Callable[..., None]
+
+COMMON: dict[str, tuple[Any, Any]] = {
+    "threads": (options.Threads, None),
+    "quiet": (options.Quiet, False),
+    "verbose": (options.Verbose, False),
+    "strict": (options.Strict, False),
+    "log_file": (options.LogFile, None),
+}
+INPUT: dict[str, tuple[Any, Any]] = {
+    "voxel": (options.Voxel, None),
+    "sample": (options.Sample, None),
+    "crop": (options.Crop, None),
+    "outliers": (options.Outliers, False),
+    "cap": (options.Cap, False),
+    "seed": (options.Seed, 0),
+}
+
+
+def common(command: Command) -> Command:
+    """Add --threads, --quiet, --verbose, --strict and --log, and act on them before the command runs."""
+
+    def run(**arguments: Any) -> None:
+        begin(**{name: arguments.pop(name) for name in COMMON})
+        command(**arguments)
+
+    return _with_options(command, run, COMMON, drop=())
+
+
+def reads_cloud(command: Command) -> Command:
+    """Add the input options and hand them to the command as one mapping called conditioning."""
+
+    def run(**arguments: Any) -> None:
+        conditioning = {name: arguments.pop(name) for name in INPUT}
+        command(**arguments, conditioning=conditioning)
+
+    return _with_options(command, run, INPUT, drop=("conditioning",))
+
+
+def _with_options(
+    command: Command, run: Command, extra: Mapping[str, tuple[Any, Any]], drop: tuple[str, ...]
+) -> Command:
+    """Return run under the name, help and signature of a command, with extra options behind its own."""
+    functools.update_wrapper(run, command)
+    own = [p for p in inspect.signature(command).parameters.values() if p.name not in drop]
+    added = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+        for name, (annotation, default) in extra.items()
+    ]
+    ordered = sorted([*own, *added], key=lambda p: p.kind)
+    run.__signature__ = inspect.Signature(ordered)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in ordered}
+    return run

@@ -1,0 +1,71 @@
+"""Messages on stderr, and how errors leave the program."""
+
+import logging
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from tiskel.errors import TiskelError
+
+errors = Console(stderr=True, highlight=False, soft_wrap=True)
+
+
+@dataclass
+class Session:
+    """What the options that all commands share say; set once per process by the callback of the command."""
+
+    quiet: bool = False
+    verbose: bool = False
+    strict: bool = False
+
+
+session = Session()
+log = logging.getLogger("tiskel")
+
+
+def begin(*, threads: int | None, quiet: bool, verbose: bool, strict: bool, log_file: Path | None) -> None:
+    """Take over the common options before the command does anything."""
+    import os
+
+    session.quiet, session.verbose, session.strict = quiet, verbose, strict
+    if threads is not None:
+        os.environ["TISKEL_NUM_THREADS"] = str(threads)
+    if log_file is not None:
+        try:
+            handler = logging.FileHandler(log_file)
+        except OSError as error:
+            raise TiskelError(f"cannot write the log {log_file}: {error.strerror}") from None
+        handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+        log.addHandler(handler)
+        log.setLevel(logging.INFO)
+        log.info("%s", " ".join(sys.argv[1:]))
+
+
+def say(message: str) -> None:
+    """Tell the user something on stderr, unless quiet."""
+    log.info(message)
+    if not session.quiet:
+        errors.print(message, markup=False)
+
+
+def warn(messages: tuple[str, ...]) -> None:
+    """Print warnings; with --strict the first of them ends the run."""
+    for message in messages:
+        if session.strict:
+            raise TiskelError(f"{message} (an error because of --strict)")
+        log.warning(message)
+        if not session.quiet:
+            errors.print(f"warning: {message}", markup=False)
+
+
+def table(title: str, columns: list[str], rows: list[list[str]]) -> Table:
+    """Return a Rich table of strings, numbers to the right."""
+    made = Table(title=title, title_justify="left")
+    for column in columns:
+        made.add_column(column, justify="right")
+    for row in rows:
+        made.add_row(*row)
+    return made

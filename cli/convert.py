@@ -1,0 +1,36 @@
+"""``tiskel convert``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tiskel.cli import console, stages
+from tiskel.cli import options as o
+from tiskel.cli.common import common
+
+Target = Annotated[Path, typer.Argument(metavar="OUT", help="A file; its suffix names the format.", show_default=False)]
+
+
+@common
+def convert(source: o.Source, target: Target, sample: o.Sample = None, seed: o.Seed = 0) -> None:
+    """Convert a cloud, a mesh or a skeleton to another format.
+
+    Clouds go to PLY, XYZ, PTS, CSV, TXT, NPY; a skeleton file to OBJ lines, SWC, GraphML, JSON or PLY; any stage file
+    also gives its input cloud back: `tiskel convert curve.ply curve.swc`
+    """
+    from tiskel import load_cloud
+    from tiskel.io.exports import EXPORTS
+    from tiskel.io.point_files import dump_cloud
+    from tiskel.io.skeleton_file import parse_skeleton
+    from tiskel.io.stage import stage_of
+    from tiskel.io.streams import read_bytes
+
+    suffix = target.suffix.lower().removeprefix(".")
+    if suffix in EXPORTS and str(source) != "-" and stage_of(data := read_bytes(source)) == "skeleton":
+        skeleton = parse_skeleton(data, str(source))
+        stages.write(target, lambda: EXPORTS[suffix](skeleton))
+        return
+    cloud = load_cloud(source, mesh_samples=sample, seed=seed)
+    console.warn(cloud.warnings)
+    stages.write(target, lambda: dump_cloud(cloud.points, target))

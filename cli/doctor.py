@@ -1,0 +1,67 @@
+"""``tiskel doctor``."""
+
+import importlib
+import platform
+from importlib import metadata
+
+import typer
+
+from tiskel.cli import console
+from tiskel.cli.common import common
+from tiskel.errors import TiskelError
+
+NEEDED = {
+    "numpy": "numpy",
+    "scipy": "scipy",
+    "taichi": "taichi",
+    "plyfile": "plyfile",
+    "matplotlib": "matplotlib",
+    "networkx": "networkx",
+    "ripser": "ripser",
+}
+OPTIONAL = {
+    "open3d": "meshes and PCD; on a bare server it needs libgl1 libegl1 libx11-6 libgomp1 libusb-1.0-0",
+    "cvxopt": "--solver cholmod; pip install 'tiskel[cholmod]'",
+}
+
+
+@common
+def doctor() -> None:
+    """Check the installation: versions, optional parts, threads, and that a kernel runs."""
+    from tiskel import __version__
+
+    lines = [("tiskel", __version__, True), ("python", platform.python_version(), True)]
+    lines += [(name, *_state(module)) for name, module in NEEDED.items()]
+    for name, remark in OPTIONAL.items():
+        version, there = _state(name)
+        lines.append((name, version if there else f"not usable ({version}); optional: {remark}", True))
+    lines += _kernels()
+    for name, remark, fine in lines:
+        typer.echo(f"{'ok ' if fine else 'BAD'} {name:12} {remark}")
+    bad = [name for name, _, fine in lines if not fine]
+    if bad:
+        raise TiskelError(f"not usable: {', '.join(bad)}; install tiskel again")
+    console.say("everything needed is there")
+
+
+def _state(module: str) -> tuple[str, bool]:
+    """Return the version of a module, or why it cannot be imported."""
+    try:
+        loaded = importlib.import_module(module)
+    except Exception as error:  # a broken native library can raise anything
+        return str(error).splitlines()[0] if str(error) else type(error).__name__, False
+    version = getattr(loaded, "__version__", None) or metadata.version(module)
+    return ".".join(map(str, version)) if isinstance(version, tuple) else str(version), True
+
+
+def _kernels() -> list[tuple[str, str, bool]]:
+    """Run a small contraction and say with how many threads, and where compiled kernels are kept."""
+    from tiskel import ShapeParams, contract, make_shape, shape_graph
+    from tiskel.kernels import runtime
+
+    try:
+        left = len(contract(make_shape(shape_graph("capsule"), ShapeParams(count=200))[0]).points)
+        state = (f"run on {runtime.requested_threads()} threads; 200 points contracted to {left}", True)
+    except Exception as error:
+        state = (f"{type(error).__name__}: {error}", False)
+    return [("kernels", *state), ("cache", str(runtime.cache_folder()), True)]

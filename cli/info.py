@@ -1,0 +1,84 @@
+"""``tiskel info``."""
+
+import json
+import sys
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tiskel.cli import console
+from tiskel.cli import options as o
+from tiskel.cli.common import common
+
+if TYPE_CHECKING:
+    from tiskel.arrays import Points
+
+AsJson = Annotated[bool, typer.Option("--json", help="JSON on a terminal too.")]
+
+
+@common
+def info(source: o.Source, as_json: AsJson = False) -> None:
+    """Say what a file holds: points and extent of a cloud, steps of a contraction, counts of a skeleton.
+
+    A table on a terminal, JSON otherwise: `tiskel info curve.ply | jq .skeleton.ends`
+    """
+    facts = _facts(source)
+    if as_json or not sys.stdout.isatty():
+        typer.echo(json.dumps(facts, allow_nan=False))
+        return
+    rows = [[key, str(value)] for key, value in _flat(facts)]
+    from rich.console import Console
+
+    Console().print(console.table(str(source), ["what", "value"], rows))
+
+
+def _facts(source: Any) -> dict[str, Any]:
+    from tiskel import load_cloud
+    from tiskel.io.contraction_file import parse_contraction
+    from tiskel.io.skeleton_file import parse_skeleton
+    from tiskel.io.stage import stage_of
+    from tiskel.io.streams import read_bytes
+
+    if str(source) == "-":
+        cloud = load_cloud(source)
+        return {"file": cloud.name, "cloud": _extent(cloud.points)}
+    data = read_bytes(source)
+    stage = stage_of(data)
+    if stage == "contraction":
+        c = parse_contraction(data, str(source))
+        steps = {"steps": len(c.steps), "left": len(c.points), "method": c.params.method, "status": c.status.value}
+        return {"file": source.name, "stage": stage, "contraction": steps, "cloud": _extent(c.cloud)}
+    if stage == "skeleton":
+        s = parse_skeleton(data, str(source))
+        counts: dict[str, Any] = {
+            "nodes": len(s.nodes),
+            "edges": len(s.edges),
+            "components": s.components,
+            "loops": s.loops,
+        }
+        counts |= {"ends": s.ends, "joints": s.joints, "branches": len(s.branches), "length": s.length}
+        return {"file": source.name, "stage": stage, "skeleton": counts, "cloud": _extent(s.cloud)}
+    cloud = load_cloud(source)
+    properties = {"properties": sorted(cloud.properties)} if cloud.properties else {}
+    return {"file": cloud.name, "cloud": _extent(cloud.points) | properties, "warnings": list(cloud.warnings)}
+
+
+def _extent(points: "Points") -> dict[str, Any]:
+    """Return counts and the bounding box of the finite points."""
+    import numpy as np
+
+    finite = points[np.isfinite(points).all(axis=1)]
+    box = {"min": finite.min(axis=0).tolist(), "max": finite.max(axis=0).tolist()} if len(finite) else {}
+    return {
+        "points": len(points),
+        "not_finite": len(points) - len(finite),
+        "duplicates": len(finite) - len(np.unique(finite, axis=0)),
+        **box,
+    }
+
+
+def _flat(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
+    rows: list[tuple[str, Any]] = []
+    for key, value in facts.items():
+        rows += _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else [(f"{prefix}{key}", value)]
+    return rows

@@ -1,0 +1,120 @@
+"""Options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tiskel.params import ContractionParams, SkeletonParams
+
+CONTRACTION = ContractionParams()
+SKELETON = SkeletonParams()
+
+Source = Annotated[Path, typer.Argument(metavar="IN", help="A file, or - for standard input.", show_default=False)]
+Output = Annotated[
+    Path | None,
+    typer.Option(
+        "-o", "--output", metavar="OUT", show_default=False, rich_help_panel="Output",
+        help="A file, or - for standard output. Without it: standard output when that is a pipe or a file, "
+        "NAME.STAGE.EXT here when it is a terminal.",
+    ),
+]  # fmt: skip
+
+Threads = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        metavar="N",
+        help="Threads of the kernels. [default: what the machine allows]",
+        show_default=False,
+        rich_help_panel="Common",
+    ),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No messages.", rich_help_panel="Common")]
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="More messages, and tracebacks.", rich_help_panel="Common")
+]
+Strict = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.", rich_help_panel="Common")]
+LogFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--log", metavar="FILE", help="Append messages to a file.", show_default=False, rich_help_panel="Common"
+    ),
+]
+
+Voxel = Annotated[
+    float | None,
+    typer.Option(
+        metavar="SIZE",
+        help="Replace the points in each cube of this side by their mean.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+Sample = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="A random subset; for a mesh, the points to sample.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+Crop = Annotated[
+    str | None,
+    typer.Option(
+        metavar="xmin,ymin,zmin,xmax,ymax,zmax",
+        help="Keep what lies in a box.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+Outliers = Annotated[bool, typer.Option("--outliers", help="Remove statistical outliers.", rich_help_panel="Input")]
+Cap = Annotated[bool, typer.Option("--cap", help="Close open tube ends.", rich_help_panel="Input")]
+Seed = Annotated[int, typer.Option(min=0, help="Of everything random.", rich_help_panel="Input")]
+
+Method = Annotated[
+    str,
+    typer.Option(
+        metavar="gls|lbc",
+        help="GLSkeleton (Wen et al. 2024), or Laplacian-based contraction (Cao et al. 2010).",
+        rich_help_panel="Method",
+    ),
+]
+Neighbours = Annotated[
+    int | None,
+    typer.Option(
+        metavar="K",
+        help="Nearest neighbours, the point included. [default: 0.012 n, within 8 and 30]",
+        show_default=False,
+        rich_help_panel="Method",
+    ),
+]
+MaxSteps = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", help="Step limit. [default: 10 for gls, 20 for lbc]", show_default=False, rich_help_panel="Method"
+    ),
+]
+Normalise = Annotated[
+    str, typer.Option(metavar="side|diagonal", help="What is scaled to 1.6 inside.", rich_help_panel="Method")
+]
+SolverName = Annotated[
+    str | None,
+    typer.Option(
+        "--solver",
+        metavar="scipy|cholmod",
+        help="Sparse solver. [default: TISKEL_SOLVER, else scipy]",
+        show_default=False,
+        rich_help_panel="Method",
+    ),
+]
+Raw = Annotated[
+    bool, typer.Option("--raw", help="The curve exactly as published: spurs stay.", rich_help_panel="Method")
+]
+Radius = Annotated[
+    float,
+    typer.Option(
+        metavar="SHARE", help="Radius of the sampling balls, as a share of the diagonal.", rich_help_panel="Method"
+    ),
+]

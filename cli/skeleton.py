@@ -1,0 +1,64 @@
+"""``tiskel skeleton``."""
+
+from typing import Annotated
+
+import typer
+
+from tiskel.cli import options as o
+from tiskel.cli import stages
+from tiskel.cli.common import common
+from tiskel.errors import TiskelError
+from tiskel.params import SkeletonParams
+
+FORMATS = ("ply", "obj", "swc", "graphml", "json")
+
+Format = Annotated[
+    str | None,
+    typer.Option(
+        "--format",
+        metavar="|".join(FORMATS),
+        help="Format. [default: by the suffix of OUT, else ply]",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
+
+
+@common
+def skeleton(
+    source: o.Source,
+    output: o.Output = None,
+    format_name: Format = None,
+    raw: o.Raw = o.SKELETON.raw,
+    radius: o.Radius = o.SKELETON.radius,
+) -> None:
+    """Turn a contracted cloud into a curve skeleton.
+
+    Reads contraction.ply, writes skeleton.ply, which Open3D, trimesh and plyfile read as a line set; CloudCompare and
+    MeshLab show lines from OBJ: `tiskel contract scan.ply | tiskel skeleton - -o curve.obj`
+    """
+    chosen = format_of(format_name, str(output or ""))
+    params = SkeletonParams(raw=raw, radius=radius)
+    from tiskel import extract_skeleton
+    from tiskel.io.contraction_file import parse_contraction, source_of
+    from tiskel.io.exports import EXPORTS
+    from tiskel.io.skeleton_file import dump_skeleton
+    from tiskel.io.streams import read_bytes
+
+    data = read_bytes(source)
+    made = extract_skeleton(parse_contraction(data, str(source)), params)
+    stages.tell_skeleton(made)
+    target = stages.output_path(output, source, f"skeleton.{chosen}")
+    if chosen == "ply":
+        stages.write(target, lambda: dump_skeleton(made, params, source_of(data, str(source))))
+    else:
+        stages.write(target, lambda: EXPORTS[chosen](made))
+
+
+def format_of(name: str | None, output: str) -> str:
+    """Return the format named, or that of the suffix, or PLY."""
+    suffix = output.rpartition(".")[2].lower() if "." in output else ""
+    chosen = name or (suffix if suffix in FORMATS else "ply" if not suffix or output == "-" else suffix)
+    if chosen not in FORMATS:
+        raise TiskelError(f"a skeleton cannot be written as {chosen!r}; choose one of {', '.join(FORMATS)}")
+    return chosen

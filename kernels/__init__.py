@@ -1,0 +1,7 @@
+"""Data-parallel Taichi kernels: plain arrays in, explicit output arrays, nothing else."""
+
+import os
+
+# Taichi reads these while it is imported: no banner on stdout, no look-up of newer versions.
+os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+os.environ.setdefault("TI_SKIP_VERSION_CHECK", "ON")

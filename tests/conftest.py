@@ -1,0 +1,59 @@
+"""Shared fixtures: the reference clouds, where they are, and the program in a process of its own."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", Path(__file__).parents[1] / ".." / "shared" / "reference"))
+PROGRAM = Path(sys.executable).with_name("tiskel")
+
+Runner = Callable[..., subprocess.CompletedProcess[bytes]]
+
+
+@pytest.fixture(scope="session")
+def reference_folder() -> Path:
+    if not (REFERENCE / "clouds").is_dir():
+        pytest.skip(f"no reference clouds in {REFERENCE}; set TISKEL_REFERENCE")
+    return REFERENCE
+
+
+@pytest.fixture(scope="session")
+def reference_cloud(reference_folder: Path) -> Callable[[str], np.ndarray]:
+    from tiskel import load_cloud
+
+    return lambda name: load_cloud(reference_folder / "clouds" / f"{name}.ply").points
+
+
+@pytest.fixture(scope="session")
+def toolbox(reference_folder: Path) -> Callable[[str], Mapping[str, np.ndarray]]:
+    return lambda name: dict(np.load(reference_folder / "toolbox" / f"{name}.npz"))
+
+
+@pytest.fixture
+def tiskel(tmp_path: Path) -> Runner:
+    """Run the program in a fresh folder and return the finished process."""
+
+    def run(*words: object, data: bytes | None = None, **variables: str) -> subprocess.CompletedProcess[bytes]:
+        environment = {**os.environ, "COLUMNS": "200", **variables}
+        return subprocess.run(
+            [PROGRAM, *map(str, words)],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            check=False,
+            input=data or b"",
+        )
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def capsule() -> np.ndarray:
+    from tiskel import ShapeParams, make_shape, shape_graph
+
+    return make_shape(shape_graph("capsule"), ShapeParams(count=800))[0]

@@ -1,0 +1,1 @@
+"""Deliberately plain implementations: loops and textbook formulas that the kernels are compared with."""

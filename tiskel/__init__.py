@@ -1,0 +1,72 @@
+"""Curve skeletons of point clouds.
+
+    from tiskel import contract, extract_skeleton, load_cloud
+
+    cloud = load_cloud("in.ply")
+    skeleton = extract_skeleton(contract(cloud.points))
+    skeleton.nodes, skeleton.edges, skeleton.radius
+
+Everything public is named here; modules load on first use, so that importing
+the package costs nothing.
+"""
+
+from importlib import import_module, metadata
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tiskel.conditioning import ConditioningParams as ConditioningParams
+    from tiskel.conditioning import condition as condition
+    from tiskel.contraction import Contraction as Contraction
+    from tiskel.contraction import contract as contract
+    from tiskel.errors import TiskelError as TiskelError
+    from tiskel.io.clouds import Cloud as Cloud
+    from tiskel.io.clouds import load_cloud as load_cloud
+    from tiskel.io.contraction_file import read_contraction as read_contraction
+    from tiskel.io.contraction_file import write_contraction as write_contraction
+    from tiskel.io.skeleton_file import read_skeleton as read_skeleton
+    from tiskel.io.skeleton_file import write_skeleton as write_skeleton
+    from tiskel.params import ContractionParams as ContractionParams
+    from tiskel.params import SkeletonParams as SkeletonParams
+    from tiskel.shapes.make import ShapeParams as ShapeParams
+    from tiskel.shapes.make import make_shape as make_shape
+    from tiskel.shapes.make import shape_graph as shape_graph
+    from tiskel.skeleton import Skeleton as Skeleton
+    from tiskel.skeleton import extract_skeleton as extract_skeleton
+    from tiskel.trace import Status as Status
+    from tiskel.trace import StepRecord as StepRecord
+
+_HOME = {
+    "Cloud": "io.clouds",
+    "ConditioningParams": "conditioning",
+    "Contraction": "contraction",
+    "ContractionParams": "params",
+    "ShapeParams": "shapes.make",
+    "Skeleton": "skeleton",
+    "SkeletonParams": "params",
+    "Status": "trace",
+    "StepRecord": "trace",
+    "TiskelError": "errors",
+    "condition": "conditioning",
+    "contract": "contraction",
+    "extract_skeleton": "skeleton",
+    "load_cloud": "io.clouds",
+    "make_shape": "shapes.make",
+    "read_contraction": "io.contraction_file",
+    "read_skeleton": "io.skeleton_file",
+    "shape_graph": "shapes.make",
+    "write_contraction": "io.contraction_file",
+    "write_skeleton": "io.skeleton_file",
+}
+__all__ = sorted(_HOME)  # noqa: PLE0605
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return metadata.version("tiskel")
+    if name not in _HOME:
+        raise AttributeError(f"module 'tiskel' has no attribute {name!r}")
+    return getattr(import_module(f"tiskel.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return [*_HOME, "__version__"]

@@ -1,0 +1,104 @@
+"""PLY, through plyfile, with the checks that hostile headers need."""
+
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from plyfile import PlyData, PlyElement, PlyParseError
+
+import tiskel
+from tiskel.errors import TiskelError
+
+Columns = Mapping[str, npt.NDArray[Any]]
+MAGIC = b"ply"
+SMALLEST_ROW = 1  # byte; no element of a binary file can hold more rows than the file has bytes
+
+
+def parse(data: bytes, name: str) -> PlyData:
+    """Return the elements of a PLY file; raise TiskelError where it is cut short, too long or no PLY."""
+    stream = io.BytesIO(data)
+    try:
+        header = PlyData._parse_header(io.BytesIO(data))
+        for element in header.elements:
+            if element.count * SMALLEST_ROW > len(data):
+                raise TiskelError(
+                    f"{name}: the header promises {element.count} rows of {element.name}, the file is smaller"
+                )
+        ply = PlyData.read(stream)
+    except PlyParseError as error:
+        raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
+    except (ValueError, MemoryError, UnicodeDecodeError, OverflowError, TypeError, KeyError, EOFError) as error:
+        raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
+    rest = stream.read()
+    if rest.strip():
+        raise TiskelError(f"{name}: {len(rest)} bytes follow the last row that the header promises; export it again")
+    return ply
+
+
+def element(name: str, columns: Columns, lists: Mapping[str, tuple[str, str]] | None = None) -> PlyElement:
+    """Return an element of named columns; lists gives length and value type of list columns."""
+    lists = lists or {}
+    count = len(next(iter(columns.values())))
+    kinds = [(key, object if key in lists else np.asarray(column).dtype) for key, column in columns.items()]
+    table = np.empty(count, dtype=kinds)
+    for key, column in columns.items():
+        table[key] = column
+    lengths = {key: kind[0] for key, kind in lists.items()}
+    values = {key: kind[1] for key, kind in lists.items()}
+    return PlyElement.describe(table, name, len_types=lengths, val_types=values)
+
+
+def ragged(rows: Sequence[npt.NDArray[np.int32]]) -> npt.NDArray[Any]:
+    """Return lists of different lengths as one column."""
+    column = np.empty(len(rows), dtype=object)
+    for i, row in enumerate(rows):
+        column[i] = np.asarray(row, np.int32)
+    return column
+
+
+def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -> bytes:
+    """Return a binary little-endian file; facts become comment lines of JSON."""
+    comments = [f"tiskel {tiskel.__version__} {stage}"]
+    comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in facts.items()]
+    out = io.BytesIO()
+    PlyData(elements, text=False, byte_order="<", comments=comments).write(out)
+    return out.getvalue()
+
+
+def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
+    """Return the comment facts of a stage file; raise where it is not of this stage."""
+    head = next((c.split() for c in ply.comments if c.startswith("tiskel ")), None)
+    if head is None or len(head) != 3 or head[2] != stage:
+        found = f"a {head[2]} file" if head and len(head) == 3 else "no tiskel stage file"
+        raise TiskelError(f"{name} is {found}, a {stage} file is needed here; make one with: tiskel {VERB[stage]}")
+    found_facts = {}
+    for comment in ply.comments:
+        key, _, value = comment.partition(" ")
+        if key != "tiskel":
+            try:
+                found_facts[key] = json.loads(value)
+            except json.JSONDecodeError:
+                continue
+    return found_facts
+
+
+VERB = {"contraction": "contract", "skeleton": "skeleton"}
+
+
+def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -> npt.NDArray[np.float64]:
+    """Return three columns as (n, 3)."""
+    return np.stack([np.asarray(table[name], np.float64) for name in names], axis=1).reshape(-1, 3)
+
+
+def xyz(points: npt.NDArray[np.float64], names: Sequence[str] = ("x", "y", "z")) -> dict[str, npt.NDArray[np.float64]]:
+    """Return (n, 3) as three named columns."""
+    return {name: points[:, axis] for axis, name in enumerate(names)}
+
+
+def plain(params: Any) -> dict[str, Any]:
+    """Return a params dataclass as a JSON object."""
+    return asdict(params)

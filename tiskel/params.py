@@ -1,0 +1,78 @@
+"""Settings of every stage, with their defaults and where they come from.
+
+These dataclasses are the only place where a default is written down; the
+command line reads them from here. Values marked [T] are those of the published
+MATLAB toolboxes, which produced the published tables.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from tiskel.errors import TiskelError
+
+Method = Literal["gls", "lbc"]
+Normalisation = Literal["side", "diagonal"]
+Solver = Literal["scipy", "cholmod"]
+
+MIN_POINTS = 10  #: fewer distinct points have no surface to speak of
+SIDE = 1.6  #: length that normalisation gives the longest side or the diagonal [T]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContractionParams:
+    """Settings of :func:`tiskel.contract`; lengths in normalised units, weights without unit."""
+
+    method: Method = "gls"
+    neighbours: int | None = None  #: k nearest, the point included; None: clip(round(0.012 n), 8, 30) [T]
+    max_steps: int | None = None  #: None: 10 for gls, 20 for lbc [T]
+    normalise: Normalisation = "side"  #: what is scaled to 1.6: the longest side [T], or the diagonal (Wen et al.)
+    solver: Solver = "scipy"
+    growth: float = 3.0  #: s_L, factor of the contraction weight per step [T]
+    max_contraction_weight: float = 2048.0  #: cap of W_L [T]
+    max_attraction_weight: float = 10000.0  #: cap of W_H [T]
+    cotangent_cap: float = 10000.0  #: cap of the absolute sum of a row's cotangents [T]
+    box_growth: float = 1.2  #: a step that grows a side of the bounding box by more is discarded [T]
+    stop_ratio: float = 0.01  #: lbc stops when the ratio of ring sizes falls by less [T]
+    min_steps: int = 3  #: gls keeps at least so many steps [T]
+    epsilon: float = 1.2  #: gls, factor of the mean ring shrinkage [T]
+    phi: float = 1e5  #: gls, a point merges where F < phi s^2 [T]
+    theta: float = 0.02  #: gls, least change of the explained score [T]
+    guard: float = 1e-4  #: gls, stands in for eta s_i(0) where that is not positive [T]
+
+    def __post_init__(self) -> None:
+        _among("method", self.method, get_args(Method))
+        _among("normalise", self.normalise, get_args(Normalisation))
+        _among("solver", self.solver, get_args(Solver))
+        _at_least("neighbours", self.neighbours, 4)
+        _at_least("max_steps", self.max_steps, 1)
+        _at_least("min_steps", self.min_steps, 1)
+
+    def neighbours_for(self, count: int) -> int:
+        """Return k for a cloud of so many points."""
+        return min(count, self.neighbours or min(max(round(0.012 * count), 8), 30))
+
+    def step_limit(self) -> int:
+        """Return the largest number of steps of the chosen method."""
+        return self.max_steps or {"gls": 10, "lbc": 20}[self.method]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SkeletonParams:
+    """Settings of :func:`tiskel.extract_skeleton`."""
+
+    raw: bool = False  #: exactly as published: no spur removal
+    radius: float = 0.02  #: of the sampling balls, as a share of the diagonal of the original cloud [T]
+
+    def __post_init__(self) -> None:
+        if not 0 < self.radius < 1:
+            raise TiskelError(f"radius must be a share of the diagonal between 0 and 1, got {self.radius}")
+
+
+def _among(name: str, value: str, allowed: tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise TiskelError(f"{name} must be one of {', '.join(allowed)}, got {value!r}")
+
+
+def _at_least(name: str, value: int | None, least: int) -> None:
+    if value is not None and value < least:
+        raise TiskelError(f"{name} must be at least {least}, got {value}")

@@ -1,0 +1,53 @@
+"""Nodes of the curve: a front of sampling balls over the contracted cloud, as published."""
+
+import heapq
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Indices, Points
+
+UNCLAIMED = -1
+
+
+def front_samples(points: Points, radius: float) -> tuple[Indices, Indices]:
+    """Return the rows of the samples, and for each point the sample that owns it.
+
+    Of the points already claimed, the one farthest from its sample looks into
+    the ball around it. Where the ball holds an unclaimed point it becomes a
+    sample and claims the points of its ball that are nearer to it than to their
+    present sample. A new front starts at the next unclaimed point when the old
+    one is exhausted (Cao et al. 2010, section 4, as in the toolbox).
+    """
+    tree = cKDTree(points)
+    owner = np.full(len(points), UNCLAIMED, np.int32)
+    distance = np.full(len(points), np.inf)
+    settled = np.zeros(len(points), bool)
+    samples: list[int] = []
+    for start in range(len(points)):
+        if owner[start] != UNCLAIMED:
+            continue
+        front = [(-np.inf, start)]
+        while front:
+            priority, at = heapq.heappop(front)
+            stale = settled[at] or (owner[at] != UNCLAIMED and -priority != distance[at])
+            if stale:
+                continue
+            ball = np.array(sorted(tree.query_ball_point(points[at], radius)), dtype=np.int32)
+            settled[at] = True
+            if (owner[ball] == UNCLAIMED).any():
+                for row in _claim(points, ball, at, len(samples), owner, distance):
+                    heapq.heappush(front, (-distance[row], int(row)))
+                samples.append(at)
+            else:
+                distance[at] = 0.0  # looked around in vain: no later sample takes it over
+    return np.array(samples, np.int32), owner
+
+
+def _claim(points: Points, ball: Indices, at: int, sample: int, owner: Indices, distance: Points) -> Indices:
+    """Give the points of a ball to a new sample where it is nearer than their present one; return them."""
+    to_sample = np.linalg.norm(points[ball] - points[at], axis=1)
+    nearer = to_sample < distance[ball]
+    won = ball[nearer]
+    owner[won], distance[won] = sample, to_sample[nearer]
+    return won[won != at]

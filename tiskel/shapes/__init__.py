@@ -1,0 +1,1 @@
+"""Clouds with known curve skeletons, made from unions of round cones."""

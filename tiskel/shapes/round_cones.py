@@ -1,0 +1,141 @@
+"""Round cones: the hull of two balls, sampled and measured.
+
+A shape is a graph whose nodes carry radii; every edge is a round cone. The
+graph is the shape's curve skeleton, and the union's surface is what a scanner
+would see of it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tiskel.arrays import Indices, Mask, Numbers, Points
+
+BATCH = 200_000  # candidates per round: bounds the memory, not the result
+
+
+@dataclass(frozen=True)
+class ConeGraph:
+    """A union of round cones.
+
+    Attributes
+    ----------
+    nodes : (v, 3); radii : (v,); edges : (e, 2).
+    open_ends : nodes whose ball leaves no surface, so that the tube is open there.
+    """
+
+    nodes: Points
+    radii: Numbers
+    edges: Indices
+    open_ends: tuple[int, ...] = ()
+
+
+def signed_distance(points: Points, shape: ConeGraph, edge: int) -> Numbers:
+    """Return the exact distance of points to the surface of one round cone, negative inside.
+
+    Behind the end planes of the cone part a ball is nearest; between them the
+    distance is measured along the normal of the slanted side.
+    """
+    (a, b), (ra, rb) = shape.nodes[shape.edges[edge]], shape.radii[shape.edges[edge]]
+    axis, length = b - a, float(np.linalg.norm(b - a))
+    if length <= abs(ra - rb):
+        ball, radius = (a, ra) if ra > rb else (b, rb)
+        return np.asarray(np.linalg.norm(points - ball, axis=1) - radius)
+    sine = (ra - rb) / length
+    cosine = np.sqrt(1 - sine**2)
+    along = (points - a) @ (axis / length)
+    across = np.sqrt(np.maximum(((points - a) ** 2).sum(axis=1) - along**2, 0))
+    foot = along - across * sine / cosine  # where the slanted normal through the point meets the axis
+    on_side = across * cosine + along * sine - ra
+    at_a, at_b = np.hypot(along, across) - ra, np.hypot(along - length, across) - rb
+    return np.where(foot < 0, at_a, np.where(foot > length, at_b, on_side))
+
+
+def union_distance(points: Points, shape: ConeGraph) -> Numbers:
+    """Return the smallest signed distance to any part: exact outside, a lower bound on depth inside."""
+    return np.min([signed_distance(points, shape, e) for e in range(len(shape.edges))], axis=0)
+
+
+def sample_union(shape: ConeGraph, count: int, generator: np.random.Generator) -> Points:
+    """Return points (count, 3), uniform by area on the surface of the union; points inside another part are removed."""
+    areas = np.array([sum(_areas(*_cone(shape, e))) for e in range(len(shape.edges))])
+    found: list[Points] = []
+    have = 0
+    while have < count:
+        shares = generator.multinomial(min(BATCH, 2 * (count - have) + 1000), areas / areas.sum())
+        batch = np.concatenate([_visible(shape, e, int(m), generator) for e, m in enumerate(shares)])
+        found.append(generator.permutation(batch))
+        have += len(batch)
+    return np.concatenate(found)[:count]
+
+
+def _visible(shape: ConeGraph, edge: int, count: int, generator: np.random.Generator) -> Points:
+    """Sample one cone and drop what lies inside another part or on an open end."""
+    a, b, ra, rb = _cone(shape, edge)
+    points, end = sample_cone(a, b, ra, rb, count, generator)
+    opened = [np.isin(node, shape.open_ends) for node in shape.edges[edge]]
+    keep: Mask = ~((end == 0) & opened[0] | (end == 1) & opened[1])
+    depth = 1e-9 * max(ra, rb)  # a point on the common surface of two parts belongs to both
+    for other in range(len(shape.edges)):
+        if other != edge:
+            keep &= signed_distance(points, shape, other) > -depth
+    return points[keep]
+
+
+def _cone(shape: ConeGraph, edge: int) -> tuple[Points, Points, float, float]:
+    (a, b), (ra, rb) = shape.nodes[shape.edges[edge]], shape.radii[shape.edges[edge]]
+    return a, b, float(ra), float(rb)
+
+
+def _areas(a: Points, b: Points, ra: float, rb: float) -> tuple[float, float, float]:
+    """Return the areas of the cap at a, the slanted side, and the cap at b."""
+    length = float(np.linalg.norm(b - a))
+    if length <= abs(ra - rb):
+        return (4 * np.pi * ra**2, 0.0, 0.0) if ra > rb else (0.0, 0.0, 4 * np.pi * rb**2)
+    sine = (ra - rb) / length
+    side = np.pi * (ra + rb) * length * (1 - sine**2)
+    return 2 * np.pi * ra**2 * (1 + sine), side, 2 * np.pi * rb**2 * (1 - sine)
+
+
+def sample_cone(
+    a: Points, b: Points, ra: float, rb: float, count: int, generator: np.random.Generator
+) -> tuple[Points, Indices]:
+    """Return points (count, 3) uniform on a round cone, and for each the end whose ball it lies on, -1 for the side."""
+    areas = np.array(_areas(a, b, ra, rb))
+    part = np.repeat(np.arange(3), generator.multinomial(count, areas / areas.sum()))
+    first, second = _even_pairs(count, generator)
+    length = float(np.linalg.norm(b - a))
+    axis = (b - a) / length if length else np.array([0.0, 0.0, 1.0])
+    sine = np.clip((ra - rb) / length, -1, 1) if length else 0.0
+    # Archimedes: on a ball the axial coordinate is uniform; on a cone the radius is, weighted by itself.
+    low, high = ra * (-1 + first * (1 + sine)), length + rb * (sine + first * (1 - sine))
+    swept = np.sqrt(ra**2 + first * (rb**2 - ra**2))
+    share = first if ra == rb else (swept - ra) / (rb - ra)
+    side = ra * sine + share * (length + (rb - ra) * sine)
+    along = np.choose(part, [low, side, high])
+    cosine = np.sqrt(1 - sine**2)
+    at_a, at_b = np.sqrt(np.maximum(ra**2 - low**2, 0)), np.sqrt(np.maximum(rb**2 - (high - length) ** 2, 0))
+    across = np.choose(part, [at_a, swept * cosine, at_b])
+    u, v = _frame(axis)
+    turn = 2 * np.pi * second
+    points = a + along[:, None] * axis + across[:, None] * (np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v)
+    return points, np.choose(part, [0, -1, 1])
+
+
+def _even_pairs(count: int, generator: np.random.Generator) -> tuple[Numbers, Numbers]:
+    """Return pairs in the unit square, as even as the plastic-number sequence makes them, from a random start.
+
+    Scanners and mesh samplers spread points more evenly than chance does.
+    """
+    plastic = 1.32471795724474602596
+    steps = np.arange(count)[:, None] * np.array([1 / plastic, 1 / plastic**2]) + generator.random(2)
+    first, second = (steps % 1).T
+    return first, second
+
+
+def _frame(axis: Points) -> tuple[Points, Points]:
+    """Return two orthonormal directions across an axis."""
+    least = np.eye(3)[np.abs(axis).argmin()]
+    u = np.cross(axis, least)
+    u /= np.linalg.norm(u)
+    return u, np.cross(axis, u)

@@ -1,0 +1,157 @@
+"""The stage ``skeleton``: a contracted cloud in, a curve skeleton out."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import networkx
+
+from tiskel import graph
+from tiskel.arrays import Indices, Numbers, Points, diagonal
+from tiskel.collapse import collapse_triangles, inherited_edges
+from tiskel.contraction import Contraction
+from tiskel.errors import TiskelError
+from tiskel.params import SkeletonParams
+from tiskel.sampling import front_samples
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """A curve skeleton and the cloud it stands for; coordinates in the input's units.
+
+    Attributes
+    ----------
+    nodes : (v, 3).
+    edges : (e, 2) int32, lower node first.
+    radius : (v,), mean distance of a node's points of the cloud to it; 0 for a node without points.
+    branches : node lists from joint or end to joint or end; a closed one repeats its first node.
+    node_of_point : (n,) int32, the node of every point of the cloud.
+    cloud : (n, 3); input_rows : (n,) int32, their rows in the input.
+    contracted, origin : (m, 3), the contracted points and where they came from; empty where unknown.
+    rows : (m,) int32, rows of the cloud of the contracted points.
+    warnings : what a user should know.
+    """
+
+    nodes: Points
+    edges: Indices
+    radius: Numbers
+    branches: tuple[Indices, ...]
+    node_of_point: Indices
+    cloud: Points
+    input_rows: Indices
+    contracted: Points
+    origin: Points
+    rows: Indices
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def components(self) -> int:
+        return graph.component_count(len(self.nodes), self.edges)
+
+    @property
+    def loops(self) -> int:
+        return graph.loop_count(len(self.nodes), self.edges)
+
+    @property
+    def degrees(self) -> Indices:
+        return graph.degrees(len(self.nodes), self.edges)
+
+    @property
+    def ends(self) -> int:
+        return int((self.degrees == 1).sum())
+
+    @property
+    def joints(self) -> int:
+        return int((self.degrees > 2).sum())
+
+    @property
+    def length(self) -> float:
+        return float(graph.edge_lengths(self.nodes, self.edges).sum())
+
+    def branch_of_node(self) -> Indices:
+        """Return (v,) the branch of each node, -1 for joints, which belong to several."""
+        branch = np.full(len(self.nodes), -1, np.int32)
+        for number, nodes in enumerate(self.branches):
+            branch[nodes] = number
+        branch[self.degrees > 2] = -1
+        return branch
+
+    def to_networkx(self) -> "networkx.Graph":
+        """Return a networkx.Graph with node attributes x, y, z, radius and edge attribute length."""
+        import networkx
+
+        network = networkx.Graph()
+        for i, ((x, y, z), radius) in enumerate(zip(self.nodes.tolist(), self.radius.tolist(), strict=True)):
+            network.add_node(i, x=x, y=y, z=z, radius=radius)
+        lengths = graph.edge_lengths(self.nodes, self.edges)
+        for (a, b), length in zip(self.edges.tolist(), lengths.tolist(), strict=True):
+            network.add_edge(a, b, length=length)
+        return network
+
+
+def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = None) -> Skeleton:
+    """Turn a contracted cloud into a curve skeleton (Cao et al. 2010, section 4).
+
+    Sampling by a front of balls, joining by first foreign ring member, and
+    collapsing of triangles are as published. Beyond that, unless ``params.raw``,
+    spurs of a single edge shorter than the local radius are removed. Radii,
+    branches and the map from points to nodes are given in both cases.
+
+    Raises TiskelError where the contracted cloud is empty.
+    """
+    params = params or SkeletonParams()
+    c = contraction
+    if len(c.points) == 0:
+        raise TiskelError("the contraction holds no point; run tiskel contract again")
+    samples, owner = front_samples(c.points, params.radius * diagonal(c.cloud))
+    joined = inherited_edges(c.rings, owner, c.points[samples])
+    nodes, edges, into = collapse_triangles(c.points[samples], joined)
+    node_of_point = into[owner][c.survivor_of()]
+    skeleton = Skeleton(
+        nodes=nodes,
+        edges=edges,
+        radius=node_radii(nodes, c.cloud, node_of_point),
+        branches=graph.branches(len(nodes), edges),
+        node_of_point=node_of_point,
+        cloud=c.cloud,
+        input_rows=c.input_rows,
+        contracted=c.points,
+        origin=c.origin,
+        rows=c.rows,
+        warnings=_warnings(nodes),
+    )
+    return skeleton if params.raw else prune_spurs(skeleton)
+
+
+def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
+    """Return (v,) the mean distance of each node's points to it, 0 where it has none."""
+    distance = np.linalg.norm(cloud - nodes[node_of_point], axis=1)
+    counts = np.bincount(node_of_point, minlength=len(nodes))
+    return np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1)
+
+
+def prune_spurs(skeleton: Skeleton) -> Skeleton:
+    """Return the skeleton without spurs; their points go to the joint they hung on."""
+    s = skeleton
+    into = graph.without_spurs(s.nodes, s.edges, s.radius)
+    kept = np.flatnonzero(into == np.arange(len(into)))
+    place = np.full(len(into), -1, np.int32)
+    place[kept] = np.arange(len(kept), dtype=np.int32)
+    nodes, node_of_point = s.nodes[kept], place[into[s.node_of_point]]
+    edges = place[s.edges[(place[s.edges] >= 0).all(axis=1)]]
+    return replace(
+        s,
+        nodes=nodes,
+        edges=edges,
+        node_of_point=node_of_point,
+        radius=node_radii(nodes, s.cloud, node_of_point),
+        branches=graph.branches(len(nodes), edges),
+    )
+
+
+def _warnings(nodes: Points) -> tuple[str, ...]:
+    if len(nodes) > 1:
+        return ()
+    return ("the cloud contracted to a single node: it has no elongated part at this sampling radius",)
