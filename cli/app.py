@@ -29,7 +29,7 @@ app = typer.Typer(
     "`tiskel contract in.ply | tiskel skeleton - -o out.ply`",
 )
 for command in (contract, skeleton, run, shape, convert, info, doctor):
-    app.command(no_args_is_help=command is not doctor)(command)
+    app.command(no_args_is_help=command not in (doctor, shape))(command)
 
 
 class Interrupted(BaseException):

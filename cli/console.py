@@ -24,6 +24,8 @@ class Session:
 
 session = Session()
 log = logging.getLogger("tiskel")
+log.addHandler(logging.NullHandler())  # or Python prints warnings on stderr a second time
+log.propagate = False
 
 
 def begin(*, threads: int | None, quiet: bool, verbose: bool, strict: bool, log_file: Path | None) -> None:

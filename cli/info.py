@@ -50,13 +50,7 @@ def _facts(source: Any) -> dict[str, Any]:
         return {"file": source.name, "stage": stage, "contraction": steps, "cloud": _extent(c.cloud)}
     if stage == "skeleton":
         s = parse_skeleton(data, str(source))
-        counts: dict[str, Any] = {
-            "nodes": len(s.nodes),
-            "edges": len(s.edges),
-            "components": s.components,
-            "loops": s.loops,
-        }
-        counts |= {"ends": s.ends, "joints": s.joints, "branches": len(s.branches), "length": s.length}
+        counts = {"nodes": len(s.nodes), "edges": len(s.edges), "branches": len(s.branches), **s.counts()}
         return {"file": source.name, "stage": stage, "skeleton": counts, "cloud": _extent(s.cloud)}
     cloud = load_cloud(source)
     properties = {"properties": sorted(cloud.properties)} if cloud.properties else {}

@@ -6,10 +6,12 @@ maths, which would change results; and it neither survives a fork nor starts
 outside the main thread.
 """
 
+import atexit
 import contextlib
 import functools
 import io
 import os
+import shutil
 import tempfile
 import threading
 from collections.abc import Callable
@@ -78,22 +80,32 @@ def started(kernel: _F) -> _F:
 
 
 def cache_folder() -> Path:
-    """Return the folder of compiled kernels: TI_OFFLINE_CACHE_FILE_PATH, or Taichi's own under the home folder."""
+    """Return the folder of compiled kernels: TI_OFFLINE_CACHE_FILE_PATH, or Taichi's own under the cache home."""
     given = os.environ.get(CACHE_VARIABLE)
-    return Path(given) if given else Path.home() / ".cache" / "taichi" / "ticache"
+    return Path(given) if given else _taichi_home() / "ticache"
+
+
+def _taichi_home() -> Path:
+    """Return the folder that Taichi makes for itself while it starts, whatever the location of its cache."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "taichi"
 
 
 def _cache_options() -> dict[str, Any]:
-    """Switch the cache off where its folder cannot be written; Taichi would complain at every kernel."""
-    if os.environ.get("TI_OFFLINE_CACHE") == "0":
-        return {}
-    folder = cache_folder()
+    """Keep Taichi from crashing where its folder cannot be made, and from complaining where its cache cannot."""
+    if not _writable(_taichi_home()):
+        instead = tempfile.mkdtemp(prefix="tiskel-")
+        atexit.register(shutil.rmtree, instead, ignore_errors=True)
+        os.environ["XDG_CACHE_HOME"] = instead
+    return {} if _writable(cache_folder()) else {"offline_cache": False}
+
+
+def _writable(folder: Path) -> bool:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
-            return {"offline_cache_file_path": str(folder)}
+            return True
     except OSError:
-        return {"offline_cache": False}
+        return False
 
 
 def _cgroup_quota() -> int | None:

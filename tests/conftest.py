@@ -3,16 +3,15 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from reference.fixtures import Load, Runner
+
 REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", Path(__file__).parents[1] / ".." / "shared" / "reference"))
 PROGRAM = Path(sys.executable).with_name("tiskel")
-
-Runner = Callable[..., subprocess.CompletedProcess[bytes]]
 
 
 @pytest.fixture(scope="session")
@@ -23,14 +22,14 @@ def reference_folder() -> Path:
 
 
 @pytest.fixture(scope="session")
-def reference_cloud(reference_folder: Path) -> Callable[[str], np.ndarray]:
+def reference_cloud(reference_folder: Path) -> Load:
     from tiskel import load_cloud
 
     return lambda name: load_cloud(reference_folder / "clouds" / f"{name}.ply").points
 
 
 @pytest.fixture(scope="session")
-def toolbox(reference_folder: Path) -> Callable[[str], Mapping[str, np.ndarray]]:
+def toolbox(reference_folder: Path) -> Load:
     return lambda name: dict(np.load(reference_folder / "toolbox" / f"{name}.npz"))
 
 

@@ -37,7 +37,8 @@ def collapse_triangles(nodes: Points, edges: Indices) -> tuple[Points, Indices, 
     curves, is: each triangle i < j < k offers (i, j), (j, k) and (k, i); the
     second end survives, at the midpoint; the key is the row sum of the second
     end in an adjacency matrix where a survivor joins the *columns* of the
-    edges it inherits and its own row stays as it was.
+    edges it inherits and its own row stays as it was. When that finds no
+    triangle any more, both ends are told of every edge and the search goes on.
     """
     position = dict(enumerate(nodes))
     around: dict[int, set[int]] = {i: set() for i in range(len(nodes))}
@@ -45,16 +46,29 @@ def collapse_triangles(nodes: Points, edges: Indices) -> tuple[Points, Indices, 
         around[a].add(b)
         around[b].add(a)
     into = np.arange(len(nodes), dtype=np.int32)
-    while (best := _cheapest(position, around)) is not None:
+    while True:
+        best = _cheapest(position, around)
+        if best is None and not _symmetrise(around):
+            break
+        if best is None:
+            continue
         lost, kept = best
         position[kept] = (position.pop(lost) + position[kept]) / 2
-        inherited = around.pop(lost) - {kept}
-        for neighbours in around.values():
+        knew = around.pop(lost)
+        for other, neighbours in around.items():
+            if other != kept and (other in knew or lost in neighbours):
+                neighbours.add(kept)
             neighbours.discard(lost)
-        for other in inherited:
-            around[other].add(kept)
         into[into == lost] = kept
     return _compacted(position, around, into)
+
+
+def _symmetrise(around: dict[int, set[int]]) -> bool:
+    """Let both ends of every edge know of it; return whether one did not."""
+    missing = [(b, a) for a, others in around.items() for b in others if a not in around[b]]
+    for a, b in missing:
+        around[a].add(b)
+    return bool(missing)
 
 
 def _cheapest(position: dict[int, Points], around: dict[int, set[int]]) -> tuple[int, int] | None:

@@ -50,4 +50,4 @@ def _claim(points: Points, ball: Indices, at: int, sample: int, owner: Indices, 
     nearer = to_sample < distance[ball]
     won = ball[nearer]
     owner[won], distance[won] = sample, to_sample[nearer]
-    return won[won != at]
+    return np.asarray(won[won != at])

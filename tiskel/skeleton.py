@@ -70,6 +70,16 @@ class Skeleton:
     def length(self) -> float:
         return float(graph.edge_lengths(self.nodes, self.edges).sum())
 
+    def counts(self) -> dict[str, float]:
+        """Return components, loops, ends, joints and length by name."""
+        return {
+            "components": self.components,
+            "loops": self.loops,
+            "ends": self.ends,
+            "joints": self.joints,
+            "length": self.length,
+        }
+
     def branch_of_node(self) -> Indices:
         """Return (v,) the branch of each node, -1 for joints, which belong to several."""
         branch = np.full(len(self.nodes), -1, np.int32)

@@ -6,7 +6,13 @@ import pytest
 from tiskel.neighbourhood import principal_axes
 
 GENERATOR = np.random.default_rng(3)
-SHAPES = {"ball": [1, 1, 1], "plate": [1, 1, 0], "rod": [1, 0, 0], "point": [0, 0, 0], "long": [1e3, 1, 1e-3]}
+SHAPES: dict[str, list[float]] = {
+    "ball": [1, 1, 1],
+    "plate": [1, 1, 0],
+    "rod": [1, 0, 0],
+    "point": [0, 0, 0],
+    "long": [1e3, 1, 1e-3],
+}
 
 
 @pytest.mark.parametrize("name", SHAPES)

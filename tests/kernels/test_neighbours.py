@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from reference import neighbours as plain
+from reference.fixtures import Load
 from tiskel.arrays import Points
 from tiskel.neighbourhood import nearest_neighbours
 
 
 def normalize(points: Points) -> Points:
-    return points / np.linalg.norm(points, axis=1, keepdims=True)
+    return np.asarray(points / np.linalg.norm(points, axis=1, keepdims=True))
 
 
 GENERATOR = np.random.default_rng(7)
@@ -41,6 +42,6 @@ def test_neighbours_are_those_of_the_tree_with_ties_by_index(name: str, k: int) 
 
 
 @pytest.mark.parametrize("name", ["hammer", "horse", "joint", "fertility", "cave"])
-def test_neighbours_of_real_clouds(name: str, reference_cloud) -> None:  # type: ignore[no-untyped-def]
+def test_neighbours_of_real_clouds(name: str, reference_cloud: Load) -> None:
     points = reference_cloud(name)
     np.testing.assert_array_equal(nearest_neighbours(points, 30)[0], plain.nearest(points, 30))

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference import rings as plain
+from reference.fixtures import Load
 from tiskel.arrays import normalisation
 from tiskel.neighbourhood import cloud_rings, one_rings
 from tiskel.params import ContractionParams
@@ -72,7 +73,7 @@ def test_lattice_rings_leave_out_what_triangulations_disagree_on() -> None:
 
 
 @pytest.mark.parametrize("name", ["hammer", "horse", "joint"])
-def test_rings_are_those_of_the_toolbox(name: str, reference_cloud, toolbox) -> None:  # type: ignore[no-untyped-def]
+def test_rings_are_those_of_the_toolbox(name: str, reference_cloud: Load, toolbox: Load) -> None:
     """Required are 99.9 %; found are all, so any difference is a regression."""
     points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
     rings = cloud_rings(points, ContractionParams().neighbours_for(len(points)))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from reference import gls as plain
+from reference.fixtures import Load
 from reference.rings import published
 from tiskel import ContractionParams, ShapeParams, Status, TiskelError, contract, make_shape, shape_graph
 from tiskel.arrays import normalisation
@@ -15,7 +16,7 @@ LBC_MEDIAN = {"hammer": 1e-5, "horse": 1e-4, "joint": 1e-4, "cave": 1e-4, "ferti
 
 
 @pytest.mark.parametrize("name", CLOUDS)
-def test_lbc_is_the_toolbox(name: str, reference_cloud, toolbox) -> None:  # type: ignore[no-untyped-def]
+def test_lbc_is_the_toolbox(name: str, reference_cloud: Load, toolbox: Load) -> None:
     """Same steps; the distance left comes from SuperLU and CHOLMOD rounding differently on these systems."""
     points, theirs = reference_cloud(name), toolbox(f"{name}_lbc")
     c = contract(points, ContractionParams(method="lbc"))
@@ -28,7 +29,7 @@ def test_lbc_is_the_toolbox(name: str, reference_cloud, toolbox) -> None:  # typ
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CLOUDS)
-def test_gls_equals_the_plain_implementation_of_the_paper_exactly(name: str, reference_cloud) -> None:  # type: ignore[no-untyped-def]
+def test_gls_equals_the_plain_implementation_of_the_paper_exactly(name: str, reference_cloud: Load) -> None:
     points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
     k = ContractionParams().neighbours_for(len(points))
     rings = cloud_rings(points, k)
@@ -50,7 +51,7 @@ DEPARTURES = {"hammer": ([2423], 1675, 10), "horse": ([1182], 610, 5), "joint": 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DEPARTURES)
-def test_the_departures_of_the_toolbox_are_understood(name: str, reference_cloud, toolbox) -> None:  # type: ignore[no-untyped-def]
+def test_the_departures_of_the_toolbox_are_understood(name: str, reference_cloud: Load, toolbox: Load) -> None:
     exact, left, slack = DEPARTURES[name]
     points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
     theirs = toolbox(f"{name}_lbc")
@@ -84,7 +85,7 @@ def test_contraction_keeps_its_books(name: str, method: str) -> None:
 def test_a_capsule_contracts_to_its_axis() -> None:
     cloud = make_shape(shape_graph("capsule"))[0]
     for method in ("gls", "lbc"):
-        c = contract(cloud, ContractionParams(method=method))  # type: ignore[arg-type]
+        c = contract(cloud, ContractionParams(method=method))
         away = np.linalg.norm(c.points[:, :2], axis=1)
         # The radius is 0.2; what is left of it is the noise of the sampling.
         assert np.median(away) < 0.02, method
@@ -141,7 +142,7 @@ def test_cholmod_agrees_with_superlu(capsule: np.ndarray) -> None:
     pytest.importorskip("cvxopt")
     one, other = (
         contract(capsule, ContractionParams(method="lbc", max_steps=2, solver=s)) for s in ("scipy", "cholmod")
-    )  # type: ignore[arg-type]
+    )
     # Two factorisations of systems with condition numbers around 1e10.
     np.testing.assert_allclose(one.points, other.points, atol=1e-5)
 

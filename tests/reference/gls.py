@@ -159,7 +159,7 @@ def compacted(rings: list[Ring], kept: list[int]) -> list[Ring]:
 
 def attractions(first: np.ndarray, now: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore"):
-        return np.minimum(first / now, CAP_ATTRACTION)
+        return np.asarray(np.minimum(first / now, CAP_ATTRACTION))
 
 
 def contract_as_toolbox(points: np.ndarray, rings: list[Ring], weight: float, steps: int) -> list[int]:

@@ -29,13 +29,7 @@ def to_json(s: Skeleton) -> bytes:
         "radius": s.radius.tolist(),
         "branches": [branch.tolist() for branch in s.branches],
         "node_of_point": s.node_of_point.tolist(),
-        "graph": {
-            "components": s.components,
-            "loops": s.loops,
-            "ends": s.ends,
-            "joints": s.joints,
-            "length": s.length,
-        },
+        "graph": s.counts(),
         "warnings": list(s.warnings),
     }
     return (json.dumps(document, allow_nan=False) + "\n").encode()

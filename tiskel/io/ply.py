@@ -33,10 +33,20 @@ def parse(data: bytes, name: str) -> PlyData:
         raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
     except (ValueError, MemoryError, UnicodeDecodeError, OverflowError, TypeError, KeyError, EOFError) as error:
         raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
-    rest = stream.read()
-    if rest.strip():
-        raise TiskelError(f"{name}: {len(rest)} bytes follow the last row that the header promises; export it again")
+    surplus = _surplus(ply, data, stream)
+    if surplus:
+        raise TiskelError(f"{name}: {surplus} follow the last row that the header promises; export it again")
     return ply
+
+
+def _surplus(ply: PlyData, data: bytes, stream: io.BytesIO) -> str:
+    """Return what the file holds beyond the rows of its header, in words; nothing where it is as promised."""
+    if ply.text:
+        rows = [line for line in data.split(b"end_header", 1)[1].splitlines()[1:] if line.strip()]
+        more = len(rows) - sum(element.count for element in ply.elements)
+        return f"{more} rows" if more > 0 else ""
+    rest = stream.read()
+    return f"{len(rest)} bytes" if rest.strip() else ""
 
 
 def element(name: str, columns: Columns, lists: Mapping[str, tuple[str, str]] | None = None) -> PlyElement:

@@ -31,12 +31,8 @@ def write_skeleton(
 def dump_skeleton(s: Skeleton, params: SkeletonParams | None = None, source: dict[str, str] | None = None) -> bytes:
     """Return the bytes of a stage file: the same bytes for the same skeleton."""
     vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radius, "branch": s.branch_of_node(), "degree": s.degrees}
-    contracted: dict[str, Any] = {
-        **ply.xyz(s.contracted),
-        **ply.xyz(s.origin, ORIGIN),
-        "row": s.rows,
-        "node": s.node_of_point[s.rows],
-    }
+    contracted: dict[str, Any] = {**ply.xyz(s.contracted), **ply.xyz(s.origin, ORIGIN), "row": s.rows}
+    contracted["node"] = s.node_of_point[s.rows]
     cloud: dict[str, Any] = {**ply.xyz(s.cloud), "row": s.input_rows, "node": s.node_of_point}
     elements = [
         ply.element("vertex", vertex),

@@ -25,7 +25,8 @@ def parse_text(data: bytes, name: str) -> Points:
     rows = [line for line in map(str.strip, lines) if line and not line.startswith(COMMENTS)]
     if not rows:
         raise TiskelError(f"{name} holds no points; check how it was made")
-    columns, promised = (0, 1, 2), None
+    columns: tuple[int, ...] = (0, 1, 2)
+    promised = None
     if rows[0].isdigit():
         promised, rows = int(rows[0]), rows[1:]
     elif not _is_number(rows[0].split()[0]):

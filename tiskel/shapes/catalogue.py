@@ -43,12 +43,12 @@ def _circle(count: int, radius: float, centre: npt.ArrayLike = (0, 0, 0)) -> npt
     turn = 2 * np.pi * np.arange(count + 1) / count
     circle = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1) * radius + np.asarray(centre, dtype=float)
     circle[-1] = circle[0]
-    return circle
+    return np.asarray(circle)
 
 
 def _arc(count: int, radius: float, start: float, stop: float) -> npt.NDArray[np.float64]:
     turn = np.linspace(start, stop, count)
-    return np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1) * radius
+    return np.asarray(np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1) * radius)
 
 
 def capsule() -> ConeGraph:

@@ -48,12 +48,12 @@ def signed_distance(points: Points, shape: ConeGraph, edge: int) -> Numbers:
     foot = along - across * sine / cosine  # where the slanted normal through the point meets the axis
     on_side = across * cosine + along * sine - ra
     at_a, at_b = np.hypot(along, across) - ra, np.hypot(along - length, across) - rb
-    return np.where(foot < 0, at_a, np.where(foot > length, at_b, on_side))
+    return np.asarray(np.where(foot < 0, at_a, np.where(foot > length, at_b, on_side)))
 
 
 def union_distance(points: Points, shape: ConeGraph) -> Numbers:
     """Return the smallest signed distance to any part: exact outside, a lower bound on depth inside."""
-    return np.min([signed_distance(points, shape, e) for e in range(len(shape.edges))], axis=0)
+    return np.asarray(np.min([signed_distance(points, shape, e) for e in range(len(shape.edges))], axis=0))
 
 
 def sample_union(shape: ConeGraph, count: int, generator: np.random.Generator) -> Points:

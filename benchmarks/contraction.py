@@ -1,0 +1,93 @@
+"""How fast contraction is, as ratios to a yardstick taken in the same process, alternating.
+
+    python benchmarks/contraction.py [reference cloud of a hammer]
+
+1. A whole gls contraction of the hammer, neighbours and rings included, against three
+   scipy.sparse.linalg.spsolve(A_csc, one_column) calls with default settings on the first step's normal matrix.
+2. gls against lbc, contraction alone (rings excluded): the hammer, and the hammer and quadruped shapes with 16384 points.
+3. Neighbours of a very uneven cloud against an even one of the same size.
+"""
+
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sparse
+from scipy.sparse.linalg import spsolve
+
+from tiskel import ContractionParams, ShapeParams, contract, load_cloud, make_shape, shape_graph
+from tiskel.arrays import Points, normalisation
+from tiskel.neighbourhood import cloud_rings, nearest_neighbours
+from tiskel.rings import cotangent_laplacian, mean_ring_length
+
+ROUNDS = 5
+HAMMER = Path(__file__).parents[1] / ".." / "shared" / "reference" / "clouds" / "hammer.ply"
+
+
+def alternating(*works: Callable[[], float]) -> list[float]:
+    """Return the median of each work's own figure over rounds of all of them, after one round to warm up."""
+    figures = [[work() for work in works] for _ in range(ROUNDS + 1)][1:]
+    return [statistics.median(column) for column in zip(*figures, strict=True)]
+
+
+def seconds(work: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
+
+
+def first_normal_matrix(points: Points) -> tuple[sparse.csc_array, Points]:
+    cloud = normalisation(points).apply(points)
+    rings = cloud_rings(cloud, ContractionParams().neighbours_for(len(cloud)))
+    laplacian = cotangent_laplacian(cloud, rings, ContractionParams().cotangent_cap)
+    weight = 1 / (5 * mean_ring_length(cloud, rings, count_first_twice=False))
+    return sparse.csc_array(weight**2 * (laplacian.T @ laplacian) + sparse.eye_array(len(cloud))), cloud
+
+
+def against_spsolve(points: Points) -> None:
+    matrix, right = first_normal_matrix(points)
+    ours, three = alternating(
+        lambda: seconds(lambda: contract(points, ContractionParams(method="gls"))),
+        lambda: seconds(lambda: [spsolve(matrix, right[:, axis]) for axis in range(3)]),
+    )
+    print(f"whole gls contraction: {ours:.3f} s; three spsolve: {three:.3f} s; ratio {ours / three:.2f}")
+
+
+def against_lbc(name: str, points: Points) -> None:
+    """The whole contraction less its neighbours and rings: the discarded last step counts."""
+
+    def alone(method: str) -> float:
+        start = time.perf_counter()
+        c = contract(points, ContractionParams(method=method))  # type: ignore[arg-type]
+        return time.perf_counter() - start - c.ring_seconds
+
+    gls, lbc = alternating(lambda: alone("gls"), lambda: alone("lbc"))
+    left = contract(points, ContractionParams(method="gls"))
+    print(
+        f"{name}, {len(points)} points: gls {gls:.3f} s ({len(left.steps)} steps, {left.status.value}, "
+        f"{len(left.points) / len(points):.1%} left), lbc {lbc:.3f} s; lbc / gls {lbc / gls:.2f}"
+    )
+
+
+def neighbours_of_uneven_clouds() -> None:
+    generator = np.random.default_rng(0)
+    even = generator.random((100_000, 3))
+    uneven = generator.normal(size=(100_000, 3)) * np.geomspace(1e-6, 1, 100_000)[:, None]
+    one, other = alternating(*(lambda p=p: seconds(lambda: nearest_neighbours(p, 30)) for p in (even, uneven)))
+    print(f"neighbours of 100000 points: even {one:.3f} s, density 1e18:1 {other:.3f} s; ratio {other / one:.2f}")
+
+
+def main() -> None:
+    hammer = load_cloud(sys.argv[1] if len(sys.argv) > 1 else HAMMER).points
+    against_spsolve(hammer)
+    against_lbc("hammer", hammer)
+    for name in ("hammer", "quadruped"):
+        against_lbc(f"shape {name}", make_shape(shape_graph(name), ShapeParams(count=16384))[0])
+    neighbours_of_uneven_clouds()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,303 @@
+"""Every command through a real process: what it writes, where it says so, and how it ends."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reference.fixtures import Runner
+from tiskel import load_cloud, read_contraction, read_skeleton
+from tiskel.shapes.catalogue import SHAPES
+
+PROGRAM = Path(sys.executable).with_name("tiskel")
+
+
+@pytest.fixture
+def cloud(tiskel: Runner, tmp_path: Path) -> Path:
+    assert tiskel("shape", "y", "-n", 900, "-o", "y.ply").returncode == 0
+    return tmp_path / "y.ply"
+
+
+def one_error_line(done: "subprocess.CompletedProcess[bytes]", code: int = 1) -> str:
+    """Return the only line of a failed run, having checked that it is one, on stderr, and no traceback."""
+    assert done.returncode == code, done.stderr.decode()
+    assert done.stdout == b""
+    lines = [line for line in done.stderr.decode().splitlines() if not line.startswith("warning: ")]
+    assert len(lines) == 1
+    assert lines[0].startswith("error: ")
+    return lines[0]
+
+
+def test_stages_chain_through_pipes_with_data_alone_on_stdout(tiskel: Runner, cloud: Path) -> None:
+    contracted = tiskel("contract", cloud.name)
+    assert contracted.returncode == 0
+    assert contracted.stdout.startswith(b"ply\n")
+    curve = tiskel("skeleton", "-", data=contracted.stdout)
+    assert curve.returncode == 0
+    assert curve.stdout.startswith(b"ply\n")
+    assert b"nodes" in curve.stderr
+    said = tiskel("info", "-", data=curve.stdout)
+    assert json.loads(said.stdout)["cloud"]["points"] == 900
+
+
+def test_files_pipes_and_threads_give_the_same_bytes(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    for method in ("gls", "lbc"):
+        made = [tiskel("contract", cloud.name, "--method", method, "--threads", n).stdout for n in (1, 2, 2)]
+        assert made[0] == made[1] == made[2]
+        assert tiskel("contract", "-", "--method", method, data=cloud.read_bytes()).stdout.count(b"stdin") == 1
+        (tmp_path / "c.ply").write_bytes(made[0])
+        curves = [tiskel("skeleton", "c.ply", "--threads", n).stdout for n in (1, 2)]
+        assert curves[0] == curves[1]
+        tiskel("skeleton", "c.ply", "-o", "s.ply")
+        assert (tmp_path / "s.ply").read_bytes() == curves[0]
+
+
+def test_results_hold_no_path_and_no_time(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "y.ply").write_bytes(cloud.read_bytes())
+    here, there = (tiskel("contract", name).stdout for name in ("y.ply", tmp_path / "deep" / "y.ply"))
+    assert here == there
+    header = here.split(b"end_header")[0]
+    assert b'"name": "y.ply"' in header
+    assert str(tmp_path).encode() not in header
+    assert b"seconds" not in header
+
+
+@pytest.mark.parametrize("suffix", ["ply", "obj", "swc", "graphml", "json"])
+def test_skeletons_in_every_format(suffix: str, tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    assert tiskel("contract", cloud.name, "-o", "c.ply").returncode == 0
+    assert tiskel("skeleton", "c.ply", "-o", f"s.{suffix}").returncode == 0
+    assert tiskel("skeleton", "c.ply", "--format", suffix).stdout == (tmp_path / f"s.{suffix}").read_bytes() != b""
+    tiskel("skeleton", "c.ply", "-o", "again.ply")
+    assert tiskel("convert", "again.ply", f"t.{suffix}").returncode == 0
+    assert (tmp_path / f"t.{suffix}").stat().st_size > 0
+
+
+def test_raw_and_radius_reach_the_library(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    tiskel("contract", cloud.name, "--method", "lbc", "-o", "c.ply")
+    tiskel("skeleton", "c.ply", "--raw", "--radius", 0.3, "-o", "coarse.ply")
+    tiskel("skeleton", "c.ply", "-o", "fine.ply")
+    assert len(read_skeleton(tmp_path / "coarse.ply").nodes) < len(read_skeleton(tmp_path / "fine.ply").nodes)
+    assert b'{"raw": true, "radius": 0.3}' in (tmp_path / "coarse.ply").read_bytes()
+
+
+def test_contract_options_reach_the_library(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    words = ("--method", "lbc", "--neighbours", 12, "--max-steps", 2, "--normalise", "diagonal", "--solver", "scipy")
+    done = tiskel("contract", cloud.name, *words, "--sample", 500, "--verbose", "-o", "c.ply")
+    c = read_contraction(tmp_path / "c.ply")
+    assert (c.params.neighbours, c.params.max_steps, c.params.normalise) == (12, 2, "diagonal")
+    assert len(c.cloud) == 500
+    assert b"sampling took away 400 points" in done.stderr
+    assert b"ring ratio" in done.stderr
+    assert b"neighbours and rings:" in done.stderr
+
+
+def test_run_writes_every_file(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    done = tiskel("run", cloud.name, "-o", "out/deep")
+    assert done.returncode == 0
+    folder = tmp_path / "out" / "deep"
+    names = {"contraction.ply", "report.html", "timings.json"}
+    names |= {f"skeleton.{suffix}" for suffix in ("ply", "obj", "swc", "json", "png")}
+    assert {p.name for p in folder.iterdir()} == names
+    assert (folder / "skeleton.png").read_bytes().startswith(b"\x89PNG")
+    assert json.loads((folder / "timings.json").read_text())["contract"] > 0
+    assert "skeleton.png" in (folder / "report.html").read_text()
+    piped = tiskel("skeleton", "-", data=tiskel("contract", cloud.name).stdout).stdout
+    assert (folder / "skeleton.ply").read_bytes() == piped
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(SHAPES))
+def test_every_shape_goes_through_run(name: str, tiskel: Runner, tmp_path: Path) -> None:
+    assert tiskel("shape", name, "-n", 1500, "-o", "a.ply", "--skeleton", "true.obj").returncode == 0
+    done = tiskel("run", "a.ply", "-o", "out")
+    assert done.returncode == 0, done.stderr.decode()
+    assert len(read_skeleton(tmp_path / "out" / "skeleton.ply").nodes) > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["hammer", "horse", "joint", "fertility", "cave"])
+def test_reference_clouds_go_through_run(name: str, tiskel: Runner, reference_folder: Path, tmp_path: Path) -> None:
+    done = tiskel("run", reference_folder.resolve() / "clouds" / f"{name}.ply", "-o", "out")
+    assert done.returncode == 0, done.stderr.decode()
+    assert len(read_skeleton(tmp_path / "out" / "skeleton.ply").nodes) > 0
+
+
+def test_shape_lists_names_and_is_seeded(tiskel: Runner) -> None:
+    assert tiskel("shape").stdout.decode().split() == list(SHAPES)
+    one, same, other = (tiskel("shape", "egg", "-n", 50, "--seed", s).stdout for s in (1, 1, 2))
+    assert one == same != other
+
+
+def test_convert_between_cloud_formats(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    for suffix in ("xyz", "csv", "pts", "npy", "ply"):
+        assert tiskel("convert", cloud.name, f"b.{suffix}").returncode == 0
+        np.testing.assert_array_equal(load_cloud(tmp_path / f"b.{suffix}").points, load_cloud(cloud).points)
+    assert "cannot be written as" in one_error_line(tiskel("convert", cloud.name, "b.docx"))
+    assert "cannot be written as" in one_error_line(tiskel("convert", cloud.name, "b.obj"))
+
+
+def test_info_of_stage_files(tiskel: Runner, cloud: Path) -> None:
+    tiskel("run", cloud.name, "-o", "out")
+    contraction, skeleton = (
+        json.loads(tiskel("info", f"out/{stage}.ply").stdout) for stage in ("contraction", "skeleton")
+    )
+    assert contraction["contraction"]["method"] == "gls"
+    assert skeleton["skeleton"]["components"] >= 1
+    assert skeleton["cloud"]["points"] == 900
+
+
+def test_doctor_finds_this_installation_well(tiskel: Runner) -> None:
+    done = tiskel("doctor", "--threads", 1)
+    assert done.returncode == 0, done.stdout.decode()
+    assert b"kernels" in done.stdout
+    assert b"1 threads" in done.stdout
+    assert b"BAD" not in done.stdout
+
+
+def xyz(points: np.ndarray) -> bytes:
+    return "".join(f"{a} {b} {c}\n" for a, b, c in points.tolist()).encode()
+
+
+RANDOM = np.random.default_rng(0).random((200, 3))
+HOPELESS = {
+    "empty": (b"", "is empty"),
+    "one point": (b"1 2 3\n", "at least 10 distinct points, got 1"),
+    "identical points": (b"1 2 3\n" * 1000, "at least 10 distinct points, got 1"),
+    "line": (xyz(np.outer(np.arange(99.0), [1, 2, 3])), "lie on a line"),
+    "plane": (xyz(RANDOM * [1, 1, 0]), "lie on a plane"),
+    "words": (b"ply is not what this is\n", "PLY"),
+    "broken rows only": (b"nan 0 0\n" * 20, "no finite point"),
+}
+
+
+@pytest.mark.parametrize("command", [("contract", "-"), ("run", "-", "-o", "out")])
+@pytest.mark.parametrize("name", HOPELESS)
+def test_hopeless_clouds_end_with_one_line_and_no_file(
+    name: str, command: tuple[str, ...], tiskel: Runner, tmp_path: Path
+) -> None:
+    data, said = HOPELESS[name]
+    assert said in one_error_line(tiskel(*command, data=data))
+    assert not [p for p in tmp_path.rglob("*") if p.is_file()]
+
+
+def test_broken_rows_are_dropped_counted_and_said(tiskel: Runner, capsule: np.ndarray) -> None:
+    done = tiskel("contract", "-", data=xyz(capsule) + b"nan 0 0\ninf 1 1\n")
+    assert done.returncode == 0
+    assert b"warning: 2 rows with NaN or Inf were dropped" in done.stderr
+    strict = tiskel("contract", "-", "--strict", data=xyz(capsule) + b"nan 0 0\n")
+    assert "because of --strict" in one_error_line(strict)
+    quiet = tiskel("contract", "-", "--quiet", data=xyz(capsule) + b"nan 0 0\n")
+    assert (quiet.returncode, quiet.stderr) == (0, b"")
+
+
+def test_missing_files_folders_and_wrong_stages(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    assert "no file nowhere.ply" in one_error_line(tiskel("contract", "nowhere.ply"))
+    assert "is a directory" in one_error_line(tiskel("contract", "."))
+    assert "is a cloud file" in one_error_line(tiskel("skeleton", cloud.name))
+    assert "a contraction file is needed" in one_error_line(tiskel("skeleton", "-", data=cloud.read_bytes()))
+    assert "cannot be written as 'dwg'" in one_error_line(tiskel("skeleton", cloud.name, "--format", "dwg"))
+    assert "cannot write" in tiskel("contract", cloud.name, "-o", "no/such/folder/c.ply").stderr.decode()
+    (tmp_path / "file").write_text("")
+    assert "cannot make the folder" in one_error_line(tiskel("run", cloud.name, "-o", "file/out"))
+
+
+def test_wrong_values_and_wrong_usage(tiskel: Runner, cloud: Path) -> None:
+    assert "method must be one of gls, lbc" in one_error_line(tiskel("contract", cloud.name, "--method", "magic"))
+    assert "--crop needs 6 numbers" in one_error_line(tiskel("contract", cloud.name, "--crop", "1,2"))
+    assert "no shape is called 'duck'" in one_error_line(tiskel("shape", "duck"))
+    assert "TISKEL_NUM_THREADS must be" in tiskel("contract", cloud.name, TISKEL_NUM_THREADS="many").stderr.decode()
+    for words in (
+        ("contract",),
+        ("nonsense",),
+        ("contract", cloud.name, "--nonsense"),
+        ("contract", cloud.name, "--threads", "0"),
+    ):
+        assert tiskel(*words).returncode == 2, words
+    assert tiskel("contract", cloud.name, "--threads", "x").returncode == 2
+
+
+def test_an_existing_file_stays_when_a_stage_fails(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    (tmp_path / "c.ply").write_text("precious")
+    tiskel("contract", "-", "-o", "c.ply", data=b"1 2 3\n")
+    assert (tmp_path / "c.ply").read_text() == "precious"
+
+
+def test_log_and_version_and_help(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    tiskel("contract", cloud.name, "--log", "a.log", "--quiet")
+    assert "contracted 900 points" in (tmp_path / "a.log").read_text()
+    assert tiskel("--version").stdout.startswith(b"tiskel 0.")
+    for command in ("contract", "skeleton", "run", "shape", "convert", "info", "doctor"):
+        assert b"Usage: tiskel" in tiskel(command, "-h").stdout
+
+
+def test_verbose_shows_the_traceback(tiskel: Runner) -> None:
+    assert b"Traceback" in tiskel("contract", "nowhere.ply", "--verbose").stderr
+
+
+def test_interrupt_ends_with_130(tmp_path: Path) -> None:
+    """The program waits for standard input when the signal comes."""
+    process = subprocess.Popen([PROGRAM, "contract", "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30) == 130
+
+
+def test_a_reader_that_leaves_early_is_no_accident(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        f"'{PROGRAM}' contract y.ply | head -c 10", shell=True, capture_output=True, cwd=tmp_path, check=True
+    )
+    assert done.stdout == b"ply\nformat"
+    assert b"Traceback" not in done.stderr
+
+
+def test_the_chain_runs_where_open3d_cannot_be_imported(tiskel: Runner, tmp_path: Path) -> None:
+    (tmp_path / "blocked").mkdir()
+    (tmp_path / "blocked" / "open3d.py").write_text("raise ImportError('libGL.so.1: cannot open shared object file')")
+    bare = {"PYTHONPATH": str(tmp_path / "blocked")}
+    for suffix in ("ply", "xyz", "npy"):
+        assert tiskel("shape", "y", "-n", 600, "-o", f"a.{suffix}", **bare).returncode == 0
+        assert tiskel("run", f"a.{suffix}", "-o", suffix, **bare).returncode == 0
+    (tmp_path / "a.stl").write_text("solid a\nendsolid a\n")
+    line = one_error_line(tiskel("contract", "a.stl", **bare))
+    assert "libGL.so.1" in line
+    assert "libgl1" in line
+    assert b"not usable (libGL.so.1" in tiskel("doctor", **bare).stdout
+
+
+def test_two_processes_start_cold_at_once_and_the_cache_location_is_kept(tmp_path: Path) -> None:
+    subprocess.run([PROGRAM, "shape", "y", "-n", "600", "-o", "y.ply"], cwd=tmp_path, check=True, capture_output=True)
+    cache = tmp_path / "cache"
+    environment = {**os.environ, "TI_OFFLINE_CACHE_FILE_PATH": str(cache), "HOME": str(tmp_path / "home")}
+    started = [
+        subprocess.Popen(
+            [PROGRAM, "contract", "y.ply", "-o", f"{i}.ply"], cwd=tmp_path, env=environment, stderr=subprocess.PIPE
+        )
+        for i in range(2)
+    ]
+    assert [process.wait(300) for process in started] == [0, 0]
+    assert (tmp_path / "0.ply").read_bytes() == (tmp_path / "1.ply").read_bytes()
+    assert any(cache.rglob("*"))
+    assert not [p for p in (tmp_path / "home").rglob("*") if p.is_file()]
+
+
+def test_a_home_that_cannot_be_written_is_no_obstacle(tmp_path: Path) -> None:
+    (tmp_path / "home").write_text("a file, so that no folder can be made in it")
+    environment = {**os.environ, "HOME": str(tmp_path / "home"), "MPLCONFIGDIR": str(tmp_path)}
+    subprocess.run(
+        [PROGRAM, "shape", "y", "-n", "300", "-o", "y.ply"],
+        cwd=tmp_path,
+        env=environment,
+        check=True,
+        capture_output=True,
+    )
+    done = subprocess.run(
+        [PROGRAM, "contract", "y.ply"], cwd=tmp_path, env=environment, check=True, capture_output=True
+    )
+    assert done.stdout.startswith(b"ply")

@@ -1,0 +1,76 @@
+"""What is done to a cloud before the first stage."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from tiskel import ConditioningParams, ShapeParams, TiskelError, condition, make_shape, shape_graph
+from tiskel.capping import cap_points
+from tiskel.conditioning import voxel_means
+
+POINTS = np.random.default_rng(0).random((2000, 3))
+
+
+def test_nothing_asked_for_changes_nothing() -> None:
+    dirty = np.concatenate([POINTS, [[np.nan, 0, 0]]])
+    same, report = condition(dirty, ConditioningParams())
+    assert same is dirty
+    assert report == ()
+
+
+def test_cropping_keeps_the_box_and_says_how_much_went() -> None:
+    box = (0.0, 0.0, 0.0, 0.5, 1.0, 1.0)
+    kept, report = condition(POINTS, ConditioningParams(crop=box))
+    np.testing.assert_array_equal(kept, POINTS[POINTS[:, 0] <= 0.5])
+    assert report == (f"cropped away {2000 - len(kept)} points",)
+
+
+def test_voxels_hold_one_mean_each() -> None:
+    means = voxel_means(POINTS, 0.25)
+    cells = np.floor((POINTS - POINTS.min(axis=0)) / 0.25)
+    expected = {tuple(cell): POINTS[(cells == cell).all(axis=1)].mean(axis=0) for cell in np.unique(cells, axis=0)}
+    np.testing.assert_allclose(means, list(expected.values()), atol=1e-12)
+
+
+def test_sampling_is_a_seeded_subset() -> None:
+    one, same, other = (condition(POINTS, ConditioningParams(sample=100, seed=s))[0] for s in (1, 1, 2))
+    assert one.tobytes() == same.tobytes() != other.tobytes()
+    assert {tuple(p) for p in one} <= {tuple(p) for p in POINTS}
+    assert len(condition(POINTS, ConditioningParams(sample=9999))[0]) == len(POINTS)
+
+
+def test_outliers_go_and_the_cloud_stays() -> None:
+    body = make_shape(shape_graph("capsule"), ShapeParams(count=2000))[0]
+    far = np.array([[5.0, 0, 0], [0, 7, 0], [0, 0, -9]])
+    kept, report = condition(np.concatenate([body, far]), ConditioningParams(outliers=True))
+    assert np.abs(kept).max() < 1
+    assert len(kept) > 0.9 * len(body)
+    assert report[0].startswith("removed")
+
+
+def test_caps_close_the_ends_of_a_tunnel_and_nothing_else() -> None:
+    shape = shape_graph("tunnel")
+    points = make_shape(shape, ShapeParams(count=4096))[0]
+    added = cap_points(points)
+    ends, radius = shape.nodes[list(shape.open_ends)], 0.25
+    nearest, which = cKDTree(ends).query(added)
+    assert nearest.max() < 1.2 * radius
+    for end in range(2):
+        # The disc's area at the cloud's own spacing: within a factor of two of the density of the wall.
+        density = (which == end).sum() / (np.pi * radius**2)
+        wall = len(points) / (2 * np.pi * radius * 1.2 * 1.4)
+        assert 0.5 < density / wall < 2
+    assert len(cap_points(make_shape(shape_graph("capsule"), ShapeParams(count=4096))[0])) == 0
+
+
+@pytest.mark.parametrize(
+    "settings", [{"crop": (0, 0, 0, 0, 1, 1)}, {"crop": (0, 1)}, {"voxel": 0.0}, {"sample": 0}, {"voxel": np.inf}]
+)
+def test_wrong_settings_are_refused(settings: dict[str, object]) -> None:
+    with pytest.raises(TiskelError):
+        ConditioningParams(**settings)  # type: ignore[arg-type]
+
+
+def test_a_crop_that_leaves_nothing_says_so() -> None:
+    with pytest.raises(TiskelError, match="no point of 2000 is left"):
+        condition(POINTS, ConditioningParams(crop=(5, 5, 5, 6, 6, 6)))

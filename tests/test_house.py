@@ -1,0 +1,72 @@
+"""The rules of the house: imports go one way, kernels follow Taichi's, the public surface is complete and cheap."""
+
+import ast
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tiskel
+
+ROOT = Path(__file__).parents[1]
+LINKS = (ROOT / "tiskel" / "cli", ROOT / "tiskel" / "kernels")
+MODULES = [
+    path
+    for room in ("tiskel", "kernels", "cli")
+    for path in sorted((ROOT / room).rglob("*.py"))
+    if not any(path.is_relative_to(link) for link in LINKS)
+]
+
+
+def imported(path: Path) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return found
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_imports_go_from_cli_to_library_to_kernels(path: Path) -> None:
+    room, names = path.relative_to(ROOT).parts[0], imported(path)
+    if room == "kernels":
+        assert not any(name.split(".")[0] == "tiskel" for name in names)
+    if room == "tiskel":
+        assert not any(name.startswith("tiskel.cli") for name in names)
+        assert "taichi" not in names
+    if room == "cli":
+        assert not {name.split(".")[0] for name in names} & {"scipy", "taichi", "open3d"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_files_are_short_and_say_what_they_are_for(path: Path) -> None:
+    source = path.read_text()
+    assert ast.get_docstring(ast.parse(source))
+    assert source.count("\n") <= 250
+
+
+def test_kernels_do_not_postpone_annotations() -> None:
+    """Taichi reads them (taichi-dev/taichi#6144)."""
+    assert not any("__future__" in (ROOT / "kernels" / p).read_text() for p in (ROOT / "kernels").glob("*.py"))
+
+
+@pytest.mark.parametrize("name", tiskel.__all__)
+def test_public_names_exist_and_are_documented(name: str) -> None:
+    assert inspect.getdoc(getattr(tiskel, name))
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'skeletonise'"):
+        _ = tiskel.skeletonise
+
+
+@pytest.mark.parametrize("code", ["import tiskel", "import tiskel.cli.app"])
+def test_importing_loads_nothing_heavy(code: str) -> None:
+    heavy = "{'numpy', 'scipy', 'taichi', 'open3d', 'ripser', 'matplotlib', 'networkx', 'plyfile'}"
+    check = f"{code}; import sys; print(sorted({heavy} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True, cwd=ROOT / "tests")
+    assert done.stdout.strip() == "[]"
