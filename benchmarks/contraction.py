@@ -4,7 +4,7 @@
 
 1. A whole gls contraction of the hammer, neighbours and rings included, against three
    scipy.sparse.linalg.spsolve(A_csc, one_column) calls with default settings on the first step's normal matrix.
-2. gls against lbc, contraction alone (rings excluded): the hammer, and the hammer and quadruped shapes with 16384 points.
+2. gls against lbc, contraction alone (rings excluded): the hammer, and two shapes with 16384 points.
 3. Neighbours of a very uneven cloud against an even one of the same size.
 """
 
@@ -15,7 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse as sparse
+from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
 from tiskel import ContractionParams, ShapeParams, contract, load_cloud, make_shape, shape_graph

@@ -9,11 +9,13 @@ from tiskel.arrays import Points
 from tiskel.skeleton import Skeleton
 
 SHOWN_POINTS = 20_000  # more only blacken the picture
-VIEWS = ((2, "along axis 3"), (1, "along axis 2"), (0, "along axis 1"))
+WIDTH, MARGIN = 11.0, 1.3  # inches
+SLENDER = 0.12  # least share of the longest extent that a panel gets
+PANELS = ((0, 0, (0, 1)), (1, 0, (0, 2)), (0, 1, (2, 1)))  # row, column, axes across and up: a third-angle drawing
 
 
 def skeleton_picture(skeleton: Skeleton, title: str) -> bytes:
-    """Return a PNG with three views along the principal axes of the cloud: the cloud in grey, the curve on top."""
+    """Return a PNG of three views along the principal axes of the cloud, at one scale: cloud grey, curve red."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -22,16 +24,19 @@ def skeleton_picture(skeleton: Skeleton, title: str) -> bytes:
     centre = skeleton.cloud.mean(axis=0)
     axes = np.linalg.svd(skeleton.cloud - centre, full_matrices=False)[2]
     cloud, nodes = (skeleton.cloud - centre) @ axes.T, (skeleton.nodes - centre) @ axes.T
-    stride = max(1, len(cloud) // SHOWN_POINTS)
-    figure = Figure(figsize=(13, 5), layout="constrained")
-    for panel, (across, name) in zip(figure.subplots(1, 3), VIEWS, strict=True):
-        shown = [axis for axis in range(3) if axis != across]
-        panel.scatter(*cloud[::stride, shown].T, s=2, c="#b9c2cc", linewidths=0)
+    extent = np.maximum(np.ptp(cloud, axis=0), SLENDER * np.ptp(cloud, axis=0).max())
+    widths, heights = (extent[0], extent[2]), (extent[1], extent[2])
+    height = (WIDTH - MARGIN) * sum(heights) / sum(widths) + MARGIN
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    grid = figure.add_gridspec(2, 2, width_ratios=widths, height_ratios=heights)
+    for row, column, shown in PANELS:
+        panel = figure.add_subplot(grid[row, column])
+        across, up = cloud[:: max(1, len(cloud) // SHOWN_POINTS), shown].T
+        panel.scatter(across, up, s=2, c="#b9c2cc", linewidths=0)
         _curve(panel, nodes[:, shown], skeleton)
-        panel.set_aspect("equal")
-        panel.set_title(name, fontsize=9)
+        panel.set_aspect("equal", adjustable="datalim")
         panel.tick_params(labelsize=7)
-    figure.suptitle(f"{title}: {_counts(skeleton)}", fontsize=11)
+    figure.suptitle(f"{title}: {_counts(skeleton)}", fontsize=10)
     out = io.BytesIO()
     figure.savefig(out, format="png", dpi=110, metadata={"Software": None})
     return out.getvalue()

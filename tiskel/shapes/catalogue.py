@@ -74,14 +74,14 @@ def egg() -> ConeGraph:
 
 def dumbbell() -> ConeGraph:
     """Two weights on a bar."""
-    return from_strands([
-        ([(0, 0, -0.8), (0, 0, -0.6)], 0.3), ([(0, 0, -0.6), (0, 0, 0.6)], 0.1), ([(0, 0, 0.6), (0, 0, 0.8)], 0.3),
-    ])  # fmt: skip
+    along = np.array([-0.8, -0.6, -0.45, 0.45, 0.6, 0.8])
+    return from_strands([(along[:, None] * [0, 0, 1], (0.3, 0.3, 0.1, 0.1, 0.3, 0.3))])
 
 
 def hammer() -> ConeGraph:
     """A handle and a head across it."""
-    return from_strands([([(0, 0, -1), (0, 0, 0.5)], 0.08), ([(-0.35, 0, 0.5), (0, 0, 0.5), (0.35, 0, 0.5)], 0.15)])
+    handle, head = [(0, 0, -1), (0, 0, 0.35), (0, 0, 0.5)], [(-0.35, 0, 0.5), (0, 0, 0.5), (0.35, 0, 0.5)]
+    return from_strands([(handle, (0.08, 0.08, 0.15)), (head, 0.15)])
 
 
 def y_shape() -> ConeGraph:
