@@ -19,7 +19,7 @@ def convert(source: o.Source, target: Target, sample: o.Sample = None, seed: o.S
     Clouds go to PLY, XYZ, PTS, CSV, TXT, NPY; a skeleton file to OBJ lines, SWC, GraphML, JSON or PLY; any stage file
     also gives its input cloud back: `tiskel convert curve.ply curve.swc`
     """
-    from tiskel import load_cloud
+    from tiskel.io.clouds import parse_cloud
     from tiskel.io.exports import EXPORTS
     from tiskel.io.point_files import dump_cloud
     from tiskel.io.skeleton_file import parse_skeleton
@@ -27,10 +27,11 @@ def convert(source: o.Source, target: Target, sample: o.Sample = None, seed: o.S
     from tiskel.io.streams import read_bytes
 
     suffix = target.suffix.lower().removeprefix(".")
-    if suffix in EXPORTS and str(source) != "-" and stage_of(data := read_bytes(source)) == "skeleton":
+    data = read_bytes(source)
+    if suffix in EXPORTS and stage_of(data) == "skeleton":
         skeleton = parse_skeleton(data, str(source))
         stages.write(target, lambda: EXPORTS[suffix](skeleton))
         return
-    cloud = load_cloud(source, mesh_samples=sample, seed=seed)
+    cloud = parse_cloud(data, source, mesh_samples=sample, seed=seed)
     console.warn(cloud.warnings)
     stages.write(target, lambda: dump_cloud(cloud.points, target))

@@ -33,15 +33,12 @@ def info(source: o.Source, as_json: AsJson = False) -> None:
 
 
 def _facts(source: Any) -> dict[str, Any]:
-    from tiskel import load_cloud
+    from tiskel.io.clouds import parse_cloud
     from tiskel.io.contraction_file import parse_contraction
     from tiskel.io.skeleton_file import parse_skeleton
     from tiskel.io.stage import stage_of
     from tiskel.io.streams import read_bytes
 
-    if str(source) == "-":
-        cloud = load_cloud(source)
-        return {"file": cloud.name, "cloud": _extent(cloud.points)}
     data = read_bytes(source)
     stage = stage_of(data)
     if stage == "contraction":
@@ -52,7 +49,7 @@ def _facts(source: Any) -> dict[str, Any]:
         s = parse_skeleton(data, str(source))
         counts = {"nodes": len(s.nodes), "edges": len(s.edges), "branches": len(s.branches), **s.counts()}
         return {"file": source.name, "stage": stage, "skeleton": counts, "cloud": _extent(s.cloud)}
-    cloud = load_cloud(source)
+    cloud = parse_cloud(data, source)
     properties = {"properties": sorted(cloud.properties)} if cloud.properties else {}
     return {"file": cloud.name, "cloud": _extent(cloud.points) | properties, "warnings": list(cloud.warnings)}
 

@@ -44,6 +44,8 @@ def test_stages_chain_through_pipes_with_data_alone_on_stdout(tiskel: Runner, cl
     assert b"nodes" in curve.stderr
     said = tiskel("info", "-", data=curve.stdout)
     assert json.loads(said.stdout)["cloud"]["points"] == 900
+    assert json.loads(said.stdout)["skeleton"]["nodes"] > 3
+    assert tiskel("convert", "-", "y.swc", data=curve.stdout).returncode == 0
 
 
 def test_files_pipes_and_threads_give_the_same_bytes(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:

@@ -56,8 +56,12 @@ def load_cloud(source: str | Path, *, mesh_samples: int | None = None, seed: int
 
     Raises TiskelError where the file is missing, damaged, empty or of an unknown kind.
     """
+    return parse_cloud(read_bytes(source), source, mesh_samples=mesh_samples, seed=seed)
+
+
+def parse_cloud(data: bytes, source: str | Path, *, mesh_samples: int | None = None, seed: int = 0) -> Cloud:
+    """Return the cloud in bytes that were read from a source; see :func:`load_cloud`."""
     name = "stdin" if str(source) == STANDARD else Path(source).name
-    data = read_bytes(source)
     if not data:
         raise TiskelError(f"{name} is empty; check how it was made")
     kind = _kind(name, data)

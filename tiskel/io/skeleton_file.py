@@ -1,9 +1,11 @@
 """The stage file ``skeleton.ply``: a line set that other tools read, and all that later stages need.
 
 Elements: ``vertex`` (x y z radius branch degree; branch is -1 for a joint,
-which belongs to several) and ``edge`` (vertex1 vertex2); ``branch``, the node
-lists; ``contracted``, the contracted points with origin, row in ``cloud`` and
-node; ``cloud``, every finite input point with its row in the input and its node.
+which belongs to several) and ``edge`` (vertex1 vertex2); ``branch``, how many
+nodes each has, and ``branch_node``, these nodes one branch after the other
+(trimesh gives up on lists of different lengths); ``contracted``, the contracted
+points with origin, row in ``cloud`` and node; ``cloud``, every finite input
+point with its row in the input and its node.
 """
 
 from pathlib import Path
@@ -11,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from tiskel.arrays import Indices
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.contraction_file import ORIGIN
@@ -37,7 +40,8 @@ def dump_skeleton(s: Skeleton, params: SkeletonParams | None = None, source: dic
     elements = [
         ply.element("vertex", vertex),
         ply.element("edge", {"vertex1": s.edges[:, 0], "vertex2": s.edges[:, 1]}),
-        ply.element("branch", {"nodes": ply.ragged(s.branches)}, {"nodes": ("i4", "i4")}),
+        ply.element("branch", {"count": np.array([len(branch) for branch in s.branches], np.int32)}),
+        ply.element("branch_node", {"node": np.concatenate([np.empty(0, np.int32), *s.branches])}),
         ply.element("contracted", contracted),
         ply.element("cloud", cloud),
     ]
@@ -62,7 +66,7 @@ def parse_skeleton(data: bytes, name: str) -> Skeleton:
             nodes=ply.points_of(vertex),
             edges=np.stack([edge["vertex1"], edge["vertex2"]], axis=1).astype(np.int32),
             radius=np.array(vertex["radius"], np.float64),
-            branches=tuple(np.array(nodes, np.int32) for nodes in file["branch"].data["nodes"]),
+            branches=_branches(file["branch"].data["count"], file["branch_node"].data["node"]),
             node_of_point=np.array(cloud["node"], np.int32),
             cloud=ply.points_of(cloud),
             input_rows=np.array(cloud["row"], np.int32),
@@ -73,3 +77,9 @@ def parse_skeleton(data: bytes, name: str) -> Skeleton:
         )
     except (KeyError, ValueError, TypeError) as error:
         raise TiskelError(f"{name} is a damaged skeleton file: {error}; run tiskel skeleton again") from None
+
+
+def _branches(counts: Indices, nodes: Indices) -> tuple[Indices, ...]:
+    if counts.sum() != len(nodes):
+        raise ValueError(f"branches have {counts.sum()} nodes, {len(nodes)} are listed")
+    return tuple(np.split(np.array(nodes, np.int32), np.cumsum(counts)[:-1]))
