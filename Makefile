@@ -5,11 +5,12 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: help demo test check format data clean
+.PHONY: help demo test debug check format data clean
 
 help:
 	@echo "make demo    skeleton of a sample cloud: files and a picture in out/demo"
 	@echo "make test    the test suite"
+	@echo "make debug   the tests of kernels and library with every array index checked"
 	@echo "make check   lint, format and types"
 	@echo "make format  format the code"
 	@echo "make data    make the sample clouds in data/ anew"
@@ -21,6 +22,9 @@ demo: $(INSTALLED)
 
 test: $(INSTALLED)
 	$(BIN)/pytest -q
+
+debug: $(INSTALLED)
+	TI_DEBUG=1 TI_OFFLINE_CACHE=0 $(BIN)/pytest -q tests/kernels tests/library
 
 check: $(INSTALLED)
 	$(BIN)/ruff check .

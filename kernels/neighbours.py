@@ -84,7 +84,7 @@ def start_level(codes: ti.template(), n, code, wanted) -> ti.i32:
     low, high = 0, LEVELS
     while low < high:
         level = (low + high + 1) // 2
-        shift = 3 * (LEVELS - level)
+        shift = ti.cast(3 * (LEVELS - level), ti.i64)  # shifts of one width: debug mode checks no other
         first = (code >> shift) << shift
         if first_at_least(codes, n, first + (ti.i64(1) << shift)) - first_at_least(codes, n, first) >= wanted:
             low = level
@@ -120,9 +120,9 @@ def _nearest(
         level = start_level(codes, n, codes[s], ti.max(1, k // 4))
         searching = True
         while searching:
-            shift = LEVELS - level
+            shift = ti.cast(LEVELS - level, ti.i64)
             width = ti.cast(ti.i64(1) << shift, ti.f64) / inverse_cell
-            cells = ti.i64(1) << level
+            cells = ti.i64(1) << ti.cast(level, ti.i64)
             finest = ti.cast(ti.floor((p - origin) * inverse_cell), ti.i64)
             own = ti.max(ti.min(finest, ti.i64((1 << LEVELS) - 1)), ti.i64(0)) >> shift
             found = 0

@@ -103,8 +103,9 @@ def start_of_chain(flat: ti.template(), order: ti.template(), row, count):
             square = flat[row, order[row, s]].norm_sqr()
             if square < nearest:
                 nearest, start = square, s
-    if count == 2 and cross(flat[row, order[row, 0]], flat[row, order[row, 1]]) < 0.0:
-        start = 1
+    if count == 2:
+        if cross(flat[row, order[row, 0]], flat[row, order[row, 1]]) < 0.0:
+            start = 1
     return start, closed
 
 

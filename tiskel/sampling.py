@@ -19,22 +19,21 @@ def front_samples(points: Points, radius: float) -> tuple[Indices, Indices]:
     present sample. A new front starts at the next unclaimed point when the old
     one is exhausted (Cao et al. 2010, section 4, as in the toolbox).
     """
-    tree = cKDTree(points)
-    owner = np.full(len(points), UNCLAIMED, np.int32)
+    tree, unclaimed = cKDTree(points), _Unclaimed(points, radius)
+    owner = unclaimed.owner
     distance = np.full(len(points), np.inf)
     settled = np.zeros(len(points), bool)
     samples: list[int] = []
     for start in range(len(points)):
-        if owner[start] != UNCLAIMED:
-            continue
-        front = [(-np.inf, start)]
+        front = [(-np.inf, start)] if owner[start] == UNCLAIMED else []
         while front:
             priority, at = heapq.heappop(front)
-            stale = settled[at] or (owner[at] != UNCLAIMED and -priority != distance[at])
-            if stale:
+            if settled[at] or (owner[at] != UNCLAIMED and -priority != distance[at]):
                 continue
-            ball = np.array(sorted(tree.query_ball_point(points[at], radius)), dtype=np.int32)
             settled[at] = True
+            ball = np.empty(0, np.int32)
+            if unclaimed.may_be_near(at):
+                ball = np.array(sorted(tree.query_ball_point(points[at], radius)), dtype=np.int32)
             if (owner[ball] == UNCLAIMED).any():
                 for row in _claim(points, ball, at, len(samples), owner, distance):
                     heapq.heappush(front, (-distance[row], int(row)))
@@ -42,6 +41,32 @@ def front_samples(points: Points, radius: float) -> tuple[Indices, Indices]:
             else:
                 distance[at] = 0.0  # looked around in vain: no later sample takes it over
     return np.array(samples, np.int32), owner
+
+
+class _Unclaimed:
+    """Tell cheaply that no unclaimed point is near, which is so for most points that look around.
+
+    The tree holds the points that were unclaimed when it was built; it is built
+    anew each time half of them have been claimed.
+    """
+
+    def __init__(self, points: Points, radius: float) -> None:
+        self.points, self.reach = points, radius * (1 + 1e-9)  # the query's bound is exclusive, the ball's is not
+        self.owner = np.full(len(points), UNCLAIMED, np.int32)
+        self.rows = np.arange(len(points))
+        self.tree = cKDTree(points)
+        self.looks = 0
+
+    def may_be_near(self, at: int) -> bool:
+        self.looks += 1
+        if self.looks > len(self.rows) // 8:
+            self._forget_claimed()
+        return bool(np.isfinite(self.tree.query(self.points[at], distance_upper_bound=self.reach)[0]))
+
+    def _forget_claimed(self) -> None:
+        self.looks, left = 0, self.rows[self.owner[self.rows] == UNCLAIMED]
+        if 2 * len(left) <= len(self.rows):
+            self.rows, self.tree = left, cKDTree(self.points[left])
 
 
 def _claim(points: Points, ball: Indices, at: int, sample: int, owner: Indices, distance: Points) -> Indices:
