@@ -9,6 +9,7 @@ from reference.rings import published
 from tiskel import ContractionParams, ShapeParams, Status, TiskelError, contract, make_shape, shape_graph
 from tiskel.arrays import normalisation
 from tiskel.gls import contract_gls
+from tiskel.lbc import published_rings
 from tiskel.neighbourhood import cloud_rings, nearest_neighbours, principal_axes
 
 CLOUDS = ["hammer", "horse", "joint", "cave", "fertility"]
@@ -43,23 +44,33 @@ def test_gls_equals_the_plain_implementation_of_the_paper_exactly(name: str, ref
     np.testing.assert_array_equal(ours.points, theirs.points)
 
 
-# Points after each reduction. The toolbox leaves 2423, 1956, 1675 on hammer and 1360 on joint, 610 on horse, 2265 on
-# cave. Joint agrees point for point in every reduction, all clouds in the first; later ones drift where merging leaves
-# rings of two members, whose treatment in the toolbox is not known.
-DEPARTURES = {"hammer": ([2423], 1675, 10), "horse": ([1182], 610, 5), "joint": ([2708, 1566, 1360], 1360, 0)}
+# Points after each reduction and what the toolbox leaves. On fertility one mark of the third reduction is tied to 0.1 %
+# (F = 0.4492, phi s^2 = 0.4498) and falls the other way with the last bits of another solver; six points follow it.
+DEPARTURES = {
+    "hammer": ([2423, 1956, 1675], 1675),
+    "horse": ([1182, 726, 610], 610),
+    "joint": ([2708, 1566, 1360], 1360),
+    "cave": ([5766, 3608, 2265], 2265),
+    "fertility": ([2446, 1498, 1120, 893, 692], 686),
+}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DEPARTURES)
 def test_the_departures_of_the_toolbox_are_understood(name: str, reference_cloud: Load, toolbox: Load) -> None:
-    exact, left, slack = DEPARTURES[name]
+    expected, left = DEPARTURES[name]
     points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
-    theirs = toolbox(f"{name}_lbc")
-    weight = float(theirs["initial_contraction_weight"])
-    counts = plain.contract_as_toolbox(points, published(theirs["rings"]), weight, steps=3)
-    assert counts[: len(exact)] == exact
-    assert abs(counts[-1] - left) <= slack
-    assert len(toolbox(f"{name}_gls")["points"]) == left
+    theirs, lbc = toolbox(f"{name}_gls"), toolbox(f"{name}_lbc")
+    if "rings" in lbc:
+        rings = published(lbc["rings"])
+    else:
+        ours = published_rings(points, ContractionParams().neighbours_for(len(points)))
+        rings = [(ours.of(i).tolist(), bool(ours.closed[i])) for i in range(len(points))]
+    weight = float(lbc["initial_contraction_weight"])
+    counts = plain.contract_as_toolbox(points, rings, weight, steps=int(theirs["iterations"]))
+    assert counts == expected
+    assert len(theirs["points"]) == left
+    assert counts[-1] == left or name == "fertility"
 
 
 @pytest.mark.parametrize("method", ["gls", "lbc"])

@@ -169,6 +169,7 @@ def contract_as_toolbox(points: np.ndarray, rings: list[Ring], weight: float, st
     - psi is the remaining ring ratio in the first step, later the fall of the ratio of the points present.
     - Partners and unions come from the rings as the step found them; merges happen in index order, and each new
       ring is renamed by the merges so far; an open ring must keep four members (its list has no repeated end).
+    - Renaming drops a repeat only where it stands beside its twin; otherwise the ring holds the member twice.
     - Attraction takes the ring sizes of before the merge.
     """
     counts: list[int] = []
@@ -196,6 +197,13 @@ def contract_as_toolbox(points: np.ndarray, rings: list[Ring], weight: float, st
     return counts
 
 
+def renamed_by_toolbox(ring: list[int], names: dict[int, int], owner: int) -> list[int]:
+    """Return a ring under new names, the owner dropped, and of repeats only those that stand side by side."""
+    fresh = [name for name in (names.get(j, j) for j in ring) if name != owner]
+    kept = [name for before, name in zip([None, *fresh], fresh, strict=False) if name != before]
+    return kept[:-1] if len(kept) > 1 and kept[0] == kept[-1] else kept
+
+
 def merge_in_turn(
     origin: np.ndarray, there: np.ndarray, rings: list[Ring], marked: np.ndarray, delta: np.ndarray
 ) -> tuple[dict[int, int], list[Ring]]:
@@ -215,8 +223,8 @@ def merge_in_turn(
             continue
         merged[m] = i
         taken |= {i, m}
-        rings[i] = renamed(ring, merged, i), closed
+        rings[i] = renamed_by_toolbox(ring, merged, i), closed
         for j, (other, other_closed) in enumerate(rings):
             if j != i and m in other:
-                rings[j] = renamed(other, {m: i}, j), other_closed
+                rings[j] = renamed_by_toolbox(other, {m: i}, j), other_closed
     return merged, rings
