@@ -16,7 +16,7 @@ import numpy as np
 
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.lbc import grew, next_weights
-from tiskel.neighbourhood import nearest_neighbours, one_rings, principal_axes
+from tiskel.neighbourhood import surroundings
 from tiskel.params import ContractionParams
 from tiskel.reduction import Merge, matching, merge, stage_function
 from tiskel.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
@@ -89,10 +89,8 @@ def explained_score(points: Points) -> float:
 
 
 def _start(points: Points, params: ContractionParams) -> _State:
-    neighbours, _ = nearest_neighbours(points, params.neighbours_for(len(points)))
-    _, axes = principal_axes(points, neighbours)
+    _, axes, rings = surroundings(points, params.neighbours_for(len(points)))
     everyone = np.arange(len(points), dtype=np.int32)
-    rings = one_rings(points, everyone, neighbours, np.ascontiguousarray(axes[:, :2]))
     weight = 1 / (5 * mean_ring_length(points, rings, count_first_twice=False))
     return _State(
         everyone, points, axes[:, 2], points, rings, smallest_distances(points, rings),
@@ -134,9 +132,8 @@ def _after(
     rings = replace(reduced.rings.take(kept), members=np.where(members >= 0, place[members], -1).astype(np.int32))
     points, first_sizes = np.ascontiguousarray(there[kept]), state.first_sizes[kept]
     contraction, attraction = next_weights(state.contraction, first_sizes, smallest_distances(points, rings), params)
-    attraction[rings.sizes < 2] = (
-        params.max_attraction_weight
-    )  # no triangle: held, or it would take up its neighbours' slack
+    # A point without a triangle is held in place: it would take up the slack of its neighbours' rows.
+    attraction[rings.sizes < 2] = params.max_attraction_weight
     return _State(
         state.rows[kept], np.ascontiguousarray(state.origin[kept]), state.normals[kept], points, rings,
         first_sizes, contraction, attraction, score, len(there),

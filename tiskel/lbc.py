@@ -8,7 +8,7 @@ Follows the toolbox where print differs: the ring size is the smallest distance
 import numpy as np
 
 from tiskel.arrays import Indices, Points
-from tiskel.neighbourhood import nearest_neighbours, one_rings, principal_axes
+from tiskel.neighbourhood import surroundings
 from tiskel.params import ContractionParams
 from tiskel.published_order import in_published_order
 from tiskel.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
@@ -53,10 +53,7 @@ def contract_lbc(points: Points, params: ContractionParams) -> Trace:
 
 def published_rings(points: Points, k: int) -> Rings:
     """Return the one-rings of the cloud in the order of the toolbox, which its first weight depends on."""
-    neighbours, _ = nearest_neighbours(points, k)
-    _, axes = principal_axes(points, neighbours)
-    everyone = np.arange(len(points), dtype=np.int32)
-    rings = one_rings(points, everyone, neighbours, np.ascontiguousarray(axes[:, :2]))
+    neighbours, _, rings = surroundings(points, k)
     return in_published_order(points, neighbours, rings)
 
 

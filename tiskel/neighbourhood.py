@@ -74,9 +74,14 @@ def one_rings(points: Points, centres: Indices, candidates: Indices, planes: Num
     return Rings(np.ascontiguousarray(members[:, :width]), sizes, closed)
 
 
-def cloud_rings(points: Points, k: int) -> Rings:
-    """Return the one-ring of every point among its k nearest, on the plane of their two leading axes."""
+def surroundings(points: Points, k: int) -> tuple[Indices, Axes, Rings]:
+    """Return the k nearest neighbours of every point, their principal axes, and the one-rings on the leading two."""
     neighbours, _ = nearest_neighbours(points, k)
     _, axes = principal_axes(points, neighbours)
     everyone = np.arange(len(points), dtype=np.int32)
-    return one_rings(points, everyone, neighbours, np.ascontiguousarray(axes[:, :2]))
+    return neighbours, axes, one_rings(points, everyone, neighbours, np.ascontiguousarray(axes[:, :2]))
+
+
+def cloud_rings(points: Points, k: int) -> Rings:
+    """Return the one-ring of every point among its k nearest, on the plane of their two leading axes."""
+    return surroundings(points, k)[2]

@@ -6,7 +6,16 @@ import pytest
 from reference import gls as plain
 from reference.fixtures import Load
 from reference.rings import published
-from tiskel import ContractionParams, ShapeParams, Status, TiskelError, contract, make_shape, shape_graph
+from tiskel import (
+    ContractionParams,
+    ShapeParams,
+    Status,
+    TiskelError,
+    contract,
+    extract_skeleton,
+    make_shape,
+    shape_graph,
+)
 from tiskel.arrays import normalisation
 from tiskel.gls import contract_gls
 from tiskel.lbc import published_rings
@@ -140,6 +149,21 @@ def test_hopeless_input_is_refused_with_a_reason(points: object, said: str) -> N
     with pytest.raises(TiskelError) as error:
         contract(points)  # type: ignore[arg-type]
     assert said in str(error.value)
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("stretch", [(1, 1, 1), (1, 1e-3, 1e-6), (1e6, 1, 1)])
+@pytest.mark.parametrize("count", [10, 11, 15, 40])
+def test_tiny_and_flattened_clouds_end_with_a_status_and_finite_points(
+    count: int, stretch: tuple[float, float, float]
+) -> None:
+    for seed in range(5):
+        cloud = np.random.default_rng(seed).normal(size=(count, 3)) * stretch
+        for method in ("gls", "lbc"):
+            c = contract(cloud, ContractionParams(method=method))
+            assert isinstance(c.status, Status)
+            assert np.isfinite(c.points).all()
+            assert np.isfinite(extract_skeleton(c).nodes).all()
 
 
 def test_step_limit_is_a_status_of_its_own(capsule: np.ndarray) -> None:
