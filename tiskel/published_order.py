@@ -6,8 +6,9 @@ contraction weight, and the curve stage joins samples by the *first* foreign
 member. The order follows from how the toolbox reads its triangulation: Qhull's
 triangles about the point, in Qhull's order, walked from the smaller label of
 the first one; the labels are ranks among the neighbours, the coordinates the
-neighbours' own (not centred) on LAPACK's singular vectors. Done so, every ring
-of the reference clouds starts and turns as in the toolbox.
+neighbours' own (not centred) on LAPACK's singular vectors. Done so, more than
+99 % of the rings of the reference clouds start and turn as in the toolbox;
+the others are the same rings from another start.
 """
 
 import numpy as np

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from reference import rings as plain
 from reference.fixtures import Load
 from tiskel.arrays import normalisation
+from tiskel.lbc import published_rings
 from tiskel.neighbourhood import cloud_rings, one_rings
 from tiskel.params import ContractionParams
 
@@ -80,3 +81,12 @@ def test_rings_are_those_of_the_toolbox(name: str, reference_cloud: Load, toolbo
     published = plain.published(toolbox(f"{name}_lbc")["rings"])
     ours = [(rings.of(i).tolist(), bool(rings.closed[i])) for i in range(len(points))]
     assert sum(not plain.same(a, b) for a, b in zip(ours, published, strict=True)) == 0
+
+
+@pytest.mark.parametrize("name", ["hammer", "horse", "joint"])
+def test_published_order_starts_and_turns_rings_as_the_toolbox(name: str, reference_cloud: Load, toolbox: Load) -> None:
+    points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
+    rings = published_rings(points, ContractionParams().neighbours_for(len(points)))
+    theirs = plain.published(toolbox(f"{name}_lbc")["rings"])
+    same = sum(rings.of(i).tolist() == ring for i, (ring, _) in enumerate(theirs))
+    assert same > 0.99 * len(points)
