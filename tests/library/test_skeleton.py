@@ -127,7 +127,7 @@ def test_every_edge_lies_on_exactly_one_branch() -> None:
         assert sorted(walked) == sorted(map(tuple, shape.edges.tolist())), name
 
 
-def stub(nodes: np.ndarray, links: np.ndarray, radius: float) -> Skeleton:
+def ball_chain(nodes: np.ndarray, links: np.ndarray, radius: float) -> Skeleton:
     """A skeleton with one point of the cloud at the given radius around every node."""
     cloud = nodes + [0, 0, radius]
     rows = np.arange(len(nodes), dtype=np.int32)
@@ -147,23 +147,23 @@ def stub(nodes: np.ndarray, links: np.ndarray, radius: float) -> Skeleton:
 
 def test_spurs_shorter_than_the_local_radius_go_and_their_points_go_to_the_joint() -> None:
     nodes = np.array([[-2.0, 0, 0], [0, 0, 0], [2, 0, 0], [0, 0.4, 0]])
-    s = prune_spurs(stub(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5))
+    s = prune_spurs(ball_chain(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5))
     assert s.edges.tolist() == [[0, 1], [1, 2]]
     assert s.node_of_point.tolist() == [0, 1, 2, 1]
     assert len(s.branches) == 1
 
 
 def test_ends_of_a_plain_rod_are_no_spurs_and_long_spurs_stay() -> None:
-    rod = prune_spurs(stub(np.array([[0.0, 0, 0], [0.1, 0, 0]]), edges((0, 1)), radius=0.5))
+    rod = prune_spurs(ball_chain(np.array([[0.0, 0, 0], [0.1, 0, 0]]), edges((0, 1)), radius=0.5))
     assert len(rod.nodes) == 2
     nodes = np.array([[-2.0, 0, 0], [0, 0, 0], [2, 0, 0], [0, 0.6, 0]])
-    assert len(prune_spurs(stub(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5)).nodes) == 4
+    assert len(prune_spurs(ball_chain(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5)).nodes) == 4
 
 
 def test_a_joint_that_loses_a_spur_keeps_its_other_ends() -> None:
     """Of a joint with three short ends only one is a spur: without it the rest is a rod."""
     nodes = np.array([[0.0, 0, 0], [0.3, 0, 0], [-0.2, 0, 0], [0, 0.1, 0]])
-    s = prune_spurs(stub(nodes, edges((0, 1), (0, 2), (0, 3)), radius=0.5))
+    s = prune_spurs(ball_chain(nodes, edges((0, 1), (0, 2), (0, 3)), radius=0.5))
     assert len(s.nodes) == 3
     assert s.ends == 2
 
