@@ -2,16 +2,14 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reference.fixtures import Load, Runner
+from reference.fixtures import PROGRAM, Load, Runner
 
 REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", Path(__file__).parents[1] / ".." / "shared" / "reference"))
-PROGRAM = Path(sys.executable).with_name("tiskel")
 
 
 @pytest.fixture(scope="session")
@@ -56,3 +54,9 @@ def capsule() -> np.ndarray:
     from tiskel import ShapeParams, make_shape, shape_graph
 
     return make_shape(shape_graph("capsule"), ShapeParams(count=800))[0]
+
+
+@pytest.fixture
+def cloud(tiskel: Runner, tmp_path: Path) -> Path:
+    assert tiskel("shape", "y", "-n", 900, "-o", "y.ply").returncode == 0
+    return tmp_path / "y.ply"

@@ -48,10 +48,10 @@ def collapse_triangles(nodes: Points, edges: Indices) -> tuple[Points, Indices, 
     into = np.arange(len(nodes), dtype=np.int32)
     while True:
         best = _cheapest(position, around)
-        if best is None and not _symmetrise(around):
-            break
         if best is None:
-            continue
+            if _symmetrise(around):
+                continue
+            break
         lost, kept = best
         position[kept] = (position.pop(lost) + position[kept]) / 2
         knew = around.pop(lost)

@@ -19,7 +19,8 @@ def front_samples(points: Points, radius: float) -> tuple[Indices, Indices]:
     present sample. A new front starts at the next unclaimed point when the old
     one is exhausted (Cao et al. 2010, section 4, as in the toolbox).
     """
-    tree, unclaimed = cKDTree(points), _Unclaimed(points, radius)
+    tree = cKDTree(points)
+    unclaimed = _Unclaimed(points, tree, radius)
     owner = unclaimed.owner
     distance = np.full(len(points), np.inf)
     settled = np.zeros(len(points), bool)
@@ -50,11 +51,11 @@ class _Unclaimed:
     anew each time half of them have been claimed.
     """
 
-    def __init__(self, points: Points, radius: float) -> None:
+    def __init__(self, points: Points, tree: cKDTree, radius: float) -> None:
         self.points, self.reach = points, radius * (1 + 1e-9)  # the query's bound is exclusive, the ball's is not
         self.owner = np.full(len(points), UNCLAIMED, np.int32)
         self.rows = np.arange(len(points))
-        self.tree = cKDTree(points)
+        self.tree = tree
         self.looks = 0
 
     def may_be_near(self, at: int) -> bool:

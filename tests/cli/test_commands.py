@@ -1,37 +1,14 @@
 """Every command through a real process: what it writes, where it says so, and how it ends."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reference.fixtures import Runner
+from reference.fixtures import Runner, one_error_line
 from tiskel import load_cloud, read_contraction, read_skeleton
 from tiskel.shapes.catalogue import SHAPES
-
-PROGRAM = Path(sys.executable).with_name("tiskel")
-
-
-@pytest.fixture
-def cloud(tiskel: Runner, tmp_path: Path) -> Path:
-    assert tiskel("shape", "y", "-n", 900, "-o", "y.ply").returncode == 0
-    return tmp_path / "y.ply"
-
-
-def one_error_line(done: "subprocess.CompletedProcess[bytes]", code: int = 1) -> str:
-    """Return the only line of a failed run, having checked that it is one, on stderr, and no traceback."""
-    assert done.returncode == code, done.stderr.decode()
-    assert done.stdout == b""
-    lines = [line for line in done.stderr.decode().splitlines() if not line.startswith("warning: ")]
-    assert len(lines) == 1
-    assert lines[0].startswith("error: ")
-    return lines[0]
 
 
 def test_stages_chain_through_pipes_with_data_alone_on_stdout(tiskel: Runner, cloud: Path) -> None:
@@ -241,65 +218,3 @@ def test_log_and_version_and_help(tiskel: Runner, cloud: Path, tmp_path: Path) -
 
 def test_verbose_shows_the_traceback(tiskel: Runner) -> None:
     assert b"Traceback" in tiskel("contract", "nowhere.ply", "--verbose").stderr
-
-
-def test_interrupt_ends_with_130(tmp_path: Path) -> None:
-    """The program waits for standard input when the signal comes."""
-    process = subprocess.Popen([PROGRAM, "contract", "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
-    time.sleep(3)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 130
-
-
-def test_a_reader_that_leaves_early_is_no_accident(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
-    done = subprocess.run(
-        f"'{PROGRAM}' contract y.ply | head -c 10", shell=True, capture_output=True, cwd=tmp_path, check=True
-    )
-    assert done.stdout == b"ply\nformat"
-    assert b"Traceback" not in done.stderr
-
-
-def test_the_chain_runs_where_open3d_cannot_be_imported(tiskel: Runner, tmp_path: Path) -> None:
-    (tmp_path / "blocked").mkdir()
-    (tmp_path / "blocked" / "open3d.py").write_text("raise ImportError('libGL.so.1: cannot open shared object file')")
-    bare = {"PYTHONPATH": str(tmp_path / "blocked")}
-    for suffix in ("ply", "xyz", "npy"):
-        assert tiskel("shape", "y", "-n", 600, "-o", f"a.{suffix}", **bare).returncode == 0
-        assert tiskel("run", f"a.{suffix}", "-o", suffix, **bare).returncode == 0
-    (tmp_path / "a.stl").write_text("solid a\nendsolid a\n")
-    line = one_error_line(tiskel("contract", "a.stl", **bare))
-    assert "libGL.so.1" in line
-    assert "libgl1" in line
-    assert b"not usable (libGL.so.1" in tiskel("doctor", **bare).stdout
-
-
-def test_two_processes_start_cold_at_once_and_the_cache_location_is_kept(tmp_path: Path) -> None:
-    subprocess.run([PROGRAM, "shape", "y", "-n", "600", "-o", "y.ply"], cwd=tmp_path, check=True, capture_output=True)
-    cache = tmp_path / "cache"
-    environment = {**os.environ, "TI_OFFLINE_CACHE_FILE_PATH": str(cache), "HOME": str(tmp_path / "home")}
-    started = [
-        subprocess.Popen(
-            [PROGRAM, "contract", "y.ply", "-o", f"{i}.ply"], cwd=tmp_path, env=environment, stderr=subprocess.PIPE
-        )
-        for i in range(2)
-    ]
-    assert [process.wait(300) for process in started] == [0, 0]
-    assert (tmp_path / "0.ply").read_bytes() == (tmp_path / "1.ply").read_bytes()
-    assert any(cache.rglob("*"))
-    assert not [p for p in (tmp_path / "home").rglob("*") if p.is_file()]
-
-
-def test_a_home_that_cannot_be_written_is_no_obstacle(tmp_path: Path) -> None:
-    (tmp_path / "home").write_text("a file, so that no folder can be made in it")
-    environment = {**os.environ, "HOME": str(tmp_path / "home"), "MPLCONFIGDIR": str(tmp_path)}
-    subprocess.run(
-        [PROGRAM, "shape", "y", "-n", "300", "-o", "y.ply"],
-        cwd=tmp_path,
-        env=environment,
-        check=True,
-        capture_output=True,
-    )
-    done = subprocess.run(
-        [PROGRAM, "contract", "y.ply"], cwd=tmp_path, env=environment, check=True, capture_output=True
-    )
-    assert done.stdout.startswith(b"ply")
