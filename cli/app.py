@@ -13,6 +13,7 @@ from tiskel.cli.contract import contract
 from tiskel.cli.convert import convert
 from tiskel.cli.doctor import doctor
 from tiskel.cli.info import info
+from tiskel.cli.metrics import metrics
 from tiskel.cli.run import run
 from tiskel.cli.shape import shape
 from tiskel.cli.skeleton import skeleton
@@ -28,7 +29,7 @@ app = typer.Typer(
     help="Curve skeletons of point clouds. Stages chain through pipes: "
     "`tiskel contract in.ply | tiskel skeleton - -o out.ply`",
 )
-for command in (contract, skeleton, run, shape, convert, info, doctor):
+for command in (contract, skeleton, metrics, run, shape, convert, info, doctor):
     app.command(no_args_is_help=command not in (doctor, shape))(command)
 
 

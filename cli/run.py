@@ -50,10 +50,10 @@ def run(
     seconds: dict[str, float] = {}
     cloud, points = _timed(seconds, "read", lambda: stages.cloud_points(source, **conditioning))
     from tiskel import contract, extract_skeleton
-    from tiskel.draw import skeleton_picture
     from tiskel.io.contraction_file import dump_contraction
     from tiskel.io.exports import to_json, to_obj, to_swc
     from tiskel.io.skeleton_file import dump_skeleton
+    from tiskel.pictures.skeleton import skeleton_picture
 
     contraction = _timed(seconds, "contract", lambda: contract(points, params))
     stages.tell_contraction(contraction)

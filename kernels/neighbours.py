@@ -117,7 +117,7 @@ def _nearest(
     for s in range(n):
         p = points[s]
         row = ids[s]
-        level = start_level(codes, n, codes[s], ti.max(1, k // 4))
+        level = start_level(codes, n, codes[s], ti.max(2, k // 4))  # of one point, the finest would do: its own
         searching = True
         while searching:
             shift = ti.cast(LEVELS - level, ti.i64)

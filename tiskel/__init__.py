@@ -23,10 +23,15 @@ if TYPE_CHECKING:
     from tiskel.io.clouds import load_cloud as load_cloud
     from tiskel.io.contraction_file import read_contraction as read_contraction
     from tiskel.io.contraction_file import write_contraction as write_contraction
+    from tiskel.io.curves import Curve as Curve
+    from tiskel.io.curves import load_curve as load_curve
     from tiskel.io.skeleton_file import read_skeleton as read_skeleton
     from tiskel.io.skeleton_file import write_skeleton as write_skeleton
     from tiskel.params import ContractionParams as ContractionParams
+    from tiskel.params import MetricParams as MetricParams
     from tiskel.params import SkeletonParams as SkeletonParams
+    from tiskel.quality.evaluate import evaluate as evaluate
+    from tiskel.quality.result import Quality as Quality
     from tiskel.shapes.make import ShapeParams as ShapeParams
     from tiskel.shapes.make import make_shape as make_shape
     from tiskel.shapes.make import shape_graph as shape_graph
@@ -40,6 +45,9 @@ _HOME = {
     "ConditioningParams": "conditioning",
     "Contraction": "contraction",
     "ContractionParams": "params",
+    "Curve": "io.curves",
+    "MetricParams": "params",
+    "Quality": "quality.result",
     "ShapeParams": "shapes.make",
     "Skeleton": "skeleton",
     "SkeletonParams": "params",
@@ -48,8 +56,10 @@ _HOME = {
     "TiskelError": "errors",
     "condition": "conditioning",
     "contract": "contraction",
+    "evaluate": "quality.evaluate",
     "extract_skeleton": "skeleton",
     "load_cloud": "io.clouds",
+    "load_curve": "io.curves",
     "make_shape": "shapes.make",
     "read_contraction": "io.contraction_file",
     "read_skeleton": "io.skeleton_file",

@@ -30,6 +30,18 @@ def edge_lengths(nodes: Points, edges: Indices) -> Numbers:
     return np.asarray(np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1))
 
 
+def counts(nodes: Points, edges: Indices) -> dict[str, float]:
+    """Return components, loops, ends, joints and length by name."""
+    degree = degrees(len(nodes), edges)
+    return {
+        "components": component_count(len(nodes), edges),
+        "loops": loop_count(len(nodes), edges),
+        "ends": int((degree == 1).sum()),
+        "joints": int((degree > 2).sum()),
+        "length": float(edge_lengths(nodes, edges).sum()),
+    }
+
+
 def neighbour_lists(count: int, edges: Indices) -> list[list[int]]:
     """Return the neighbours of every node, ascending."""
     around: list[list[int]] = [[] for _ in range(count)]

@@ -1,6 +1,9 @@
 """Neighbours, principal axes and one-rings of a cloud: the kernels, with their arrays laid out."""
 
+from dataclasses import dataclass
+
 import numpy as np
+import numpy.typing as npt
 
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.rings import Rings
@@ -22,15 +25,49 @@ def nearest_neighbours(points: Points, k: int) -> tuple[Indices, Numbers]:
     """
     from tiskel.kernels import neighbours as kernel
 
-    low = points.min(axis=0)
-    finest = (float(np.ptp(points, axis=0).max()) or 1.0) / (2**kernel.LEVELS - 1)
-    codes = np.empty(len(points), np.int64)
-    kernel.morton_codes(points, low, 1 / finest, codes)
-    order = np.argsort(codes, kind="stable").astype(np.int32)
+    curve = morton_curve(points)
     nearest = np.empty((len(points), k), np.int32)
     squares = np.empty((len(points), k))
-    kernel.nearest(np.ascontiguousarray(points[order]), order, codes[order], low, 1 / finest, k, nearest, squares)
+    kernel.nearest(curve.points, curve.order, curve.codes, curve.low, curve.per_length, k, nearest, squares)
     return nearest, squares
+
+
+@dataclass(frozen=True)
+class MortonCurve:
+    """A cloud along the Morton curve, where neighbours in the order are mostly neighbours in space.
+
+    Attributes
+    ----------
+    points : (n, 3), in this order; order : (n,) int32, their rows; codes : (n,) int64, ascending.
+    low, per_length : (3,) corner of the finest grid, and its cells per length.
+    """
+
+    points: Points
+    order: Indices
+    codes: npt.NDArray[np.int64]
+    low: Numbers
+    per_length: float
+
+    def places(self, queries: Points) -> Indices:
+        """Return where in the order queries (m, 3) would stand; those outside the box at its border."""
+        from tiskel.kernels import neighbours as kernel
+
+        codes = np.empty(len(queries), np.int64)
+        inside = np.clip(queries, self.points.min(axis=0), self.points.max(axis=0))
+        kernel.morton_codes(np.ascontiguousarray(inside), self.low, self.per_length, codes)
+        return np.searchsorted(self.codes, codes).astype(np.int32)
+
+
+def morton_curve(points: Points) -> MortonCurve:
+    """Return the points (n, 3) along the Morton curve."""
+    from tiskel.kernels import neighbours as kernel
+
+    low = points.min(axis=0)
+    per_length = (2**kernel.LEVELS - 1) / (float(np.ptp(points, axis=0).max()) or 1.0)
+    codes = np.empty(len(points), np.int64)
+    kernel.morton_codes(points, low, per_length, codes)
+    order = np.argsort(codes, kind="stable").astype(np.int32)
+    return MortonCurve(np.ascontiguousarray(points[order]), order, codes[order], low, per_length)
 
 
 def principal_axes(points: Points, neighbours: Indices) -> tuple[Numbers, Axes]:

@@ -72,13 +72,7 @@ class Skeleton:
 
     def counts(self) -> dict[str, float]:
         """Return components, loops, ends, joints and length by name."""
-        return {
-            "components": self.components,
-            "loops": self.loops,
-            "ends": self.ends,
-            "joints": self.joints,
-            "length": self.length,
-        }
+        return graph.counts(self.nodes, self.edges)
 
     def branch_of_node(self) -> Indices:
         """Return (v,) the branch of each node, -1 for joints, which belong to several."""

@@ -1,11 +1,11 @@
-"""Pictures: a cloud and its curve."""
+"""A cloud and its curve."""
 
-import io
 from typing import Any
 
 import numpy as np
 
 from tiskel.arrays import Points
+from tiskel.pictures.canvas import new_figure, rendered
 from tiskel.skeleton import Skeleton
 
 SHOWN_POINTS = 20_000  # more only blacken the picture
@@ -16,18 +16,13 @@ PANELS = ((0, 0, (0, 1)), (1, 0, (0, 2)), (0, 1, (2, 1)))  # row, column, axes a
 
 def skeleton_picture(skeleton: Skeleton, title: str) -> bytes:
     """Return a PNG of three views along the principal axes of the cloud, at one scale: cloud grey, curve red."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib.figure import Figure
-
     centre = skeleton.cloud.mean(axis=0)
     axes = np.linalg.svd(skeleton.cloud - centre, full_matrices=False)[2]
     cloud, nodes = (skeleton.cloud - centre) @ axes.T, (skeleton.nodes - centre) @ axes.T
     extent = np.maximum(np.ptp(cloud, axis=0), SLENDER * np.ptp(cloud, axis=0).max())
     widths, heights = (extent[0], extent[2]), (extent[1], extent[2])
     height = (WIDTH - MARGIN) * sum(heights) / sum(widths) + MARGIN
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = new_figure(WIDTH, height)
     grid = figure.add_gridspec(2, 2, width_ratios=widths, height_ratios=heights)
     for row, column, shown in PANELS:
         panel = figure.add_subplot(grid[row, column])
@@ -37,9 +32,7 @@ def skeleton_picture(skeleton: Skeleton, title: str) -> bytes:
         panel.set_aspect("equal", adjustable="datalim")
         panel.tick_params(labelsize=7)
     figure.suptitle(f"{title}: {_counts(skeleton)}", fontsize=10)
-    out = io.BytesIO()
-    figure.savefig(out, format="png", dpi=110, metadata={"Software": None})
-    return out.getvalue()
+    return rendered(figure)
 
 
 def _curve(panel: Any, flat: Points, skeleton: Skeleton) -> None:

@@ -1,0 +1,193 @@
+"""``tiskel metrics``."""
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tiskel.cli import console, stages
+from tiskel.cli import options as o
+from tiskel.cli.common import common
+from tiskel.errors import TiskelError
+from tiskel.params import MetricParams
+
+if TYPE_CHECKING:
+    from tiskel.arrays import Points
+    from tiskel.quality.result import Quality
+
+METRICS = MetricParams()
+
+Sources = Annotated[
+    list[Path] | None,
+    typer.Argument(metavar="SKELETON...", help="Skeleton files; - for standard input.", show_default=False),
+]
+CloudFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--cloud",
+        metavar="C",
+        help="The cloud, for skeletons without one.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+PointsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--points",
+        metavar="P",
+        help="Skeletal points: a cloud, or contraction.ply.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+CurveFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--curve",
+        metavar="G",
+        help="A curve: PLY, OBJ, SWC, GraphML, JSON.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+BarRule = Annotated[
+    str,
+    typer.Option(
+        metavar="toolbox|max",
+        help="Which bars are compared: as in the toolbox, or as in print.",
+        rich_help_panel="Method",
+    ),
+]
+NoDiagonal = Annotated[
+    bool, typer.Option("--no-diagonal", help="Match bars with bars only, as in print.", rich_help_panel="Method")
+]
+MetricSeed = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.", rich_help_panel="Method")]
+AsJson = Annotated[bool, typer.Option("--json", help="JSON on a terminal too.", rich_help_panel="Output")]
+AsCsv = Annotated[bool, typer.Option("--csv", help="CSV instead of JSON.", rich_help_panel="Output")]
+HeatFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--ply",
+        metavar="OUT",
+        help="Also the values per point, as vertex properties.",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
+PlotFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--plot",
+        metavar="OUT",
+        help="Also a picture: PNG, SVG or PDF.",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
+
+
+@common
+def metrics(
+    sources: Sources = None,
+    cloud: CloudFile = None,
+    points: PointsFile = None,
+    curve: CurveFile = None,
+    bars: BarRule = METRICS.bars,
+    no_diagonal: NoDiagonal = not METRICS.diagonal,
+    normalise: o.Normalise = METRICS.normalise,
+    seed: MetricSeed = METRICS.seed,
+    as_json: AsJson = False,
+    as_csv: AsCsv = False,
+    heat: HeatFile = None,
+    plot: PlotFile = None,
+) -> None:
+    """Say how good skeletons are: topology, boundedness, inside, centredness, smoothness, loops.
+
+    A table on a terminal, otherwise JSON, one line for each skeleton: `tiskel metrics gls.ply lbc.ply`. Curves of
+    other programs come with their cloud: `tiskel metrics --cloud scan.ply --curve other.swc | jq .inside`
+    """
+    params = MetricParams(bars=bars, diagonal=not no_diagonal, normalise=normalise, seed=seed)  # type: ignore[arg-type]
+    if as_json and as_csv:
+        raise TiskelError("--json and --csv exclude each other; choose one")
+    given: list[Path | None] = [*(sources or ())] or [None]
+    if given == [None] and cloud is None and points is None:
+        raise TiskelError("nothing to measure; name a skeleton, or --cloud with --points or --curve")
+    if heat is not None and len(given) > 1:
+        raise TiskelError(f"--ply holds one skeleton, {len(given)} are given; measure them one by one")
+    measured = [_measure(source, cloud, points, curve, params) for source in given]
+    _write_extras(measured, heat, plot)
+    _show(measured, as_json, as_csv)
+
+
+Measured = tuple[str, "Points", "Quality"]
+
+
+def _measure(
+    source: Path | None, cloud: Path | None, points: Path | None, curve: Path | None, params: MetricParams
+) -> Measured:
+    from tiskel import evaluate
+    from tiskel.io.measurable import gather
+
+    m = gather(source, cloud, points, curve)
+    quality = evaluate(m.cloud, m.points, m.nodes, m.edges, origin=m.origin, params=params)
+    console.warn(tuple(f"{m.name}: {line}" for line in quality.warnings))
+    if quality.correspondence == "nearest":
+        console.say(f"{m.name}: no correspondence; the nearest points of the cloud stand in for the originals")
+    if console.session.verbose:
+        total = sum(quality.seconds.values())
+        shares = ", ".join(f"{part} {s:.3f} s ({s / total:.0%})" for part, s in quality.seconds.items())
+        console.say(f"{m.name}: {shares}")
+    return m.name, m.cloud, quality
+
+
+def _write_extras(measured: list[Measured], heat: Path | None, plot: Path | None) -> None:
+    if heat is not None:
+        from tiskel.io.heat_file import dump_heat
+
+        stages.write(heat, lambda: dump_heat(measured[0][2]))
+    if plot is not None:
+        from tiskel.pictures.canvas import picture_kind
+        from tiskel.pictures.quality import quality_picture
+
+        stages.write(plot, lambda: quality_picture(measured, picture_kind(str(plot))))
+
+
+def document(name: str, quality: "Quality") -> dict[str, Any]:
+    """Return the measures of one file as JSON values."""
+    return {"file": name, **quality.as_dict()}
+
+
+def _show(measured: list[Measured], as_json: bool, as_csv: bool) -> None:
+    documents = [document(name, quality) for name, _, quality in measured]
+    if as_csv:
+        from tiskel.quality.tables import row_of, to_csv
+
+        rows = [{"file": d["file"], **row_of(d)} for d in documents]
+        sys.stdout.write(to_csv(rows).decode())
+    elif as_json or not sys.stdout.isatty():
+        for one in documents:
+            typer.echo(json.dumps(one, allow_nan=False))
+    else:
+        from rich.console import Console
+
+        Console().print(_table(documents))
+
+
+def _table(documents: list[dict[str, Any]]):  # type: ignore[no-untyped-def]
+    """Return one column per skeleton, the best values bold and starred, reasons where there is no value."""
+    from tiskel.quality.tables import COLUMNS, best_rows, row_of, said
+
+    rows = [row_of(d) for d in documents]
+    best = best_rows(rows)
+    lines = []
+    for column in COLUMNS:
+        shown = [said(row[column.key]) for row in rows]
+        marked = [f"[bold]{text} *[/]" if (i, column.key) in best else text for i, text in enumerate(shown)]
+        reasons = [d[column.path[0]].get("reasons", {}).get(column.path[1], "") for d in documents]
+        lines.append([column.heading, *marked, "; ".join(dict.fromkeys(filter(None, reasons)))])
+    heads = ["measure", *(d["file"] for d in documents), "why not"]
+    width = len(heads) if any(line[-1] for line in lines) else len(heads) - 1
+    return console.table("skeleton quality", heads[:width], [line[:width] for line in lines])

@@ -1,0 +1,130 @@
+"""Curves from files of this and of other programs."""
+
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tiskel.arrays import Indices, Points
+from tiskel.errors import TiskelError
+from tiskel.io import ply
+from tiskel.io.clouds import TEXT_FORMATS, parse_cloud
+from tiskel.io.skeleton_file import parse_skeleton
+from tiskel.io.stage import stage_of
+from tiskel.io.streams import STANDARD, read_bytes
+
+FORMATS = (".ply", ".obj", ".swc", ".graphml", ".json", *TEXT_FORMATS, ".npy", ".npz")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve as it was read: nodes (v, 3) in the file's units, edges (e, 2) int32 by place in nodes."""
+
+    nodes: Points
+    edges: Indices
+    name: str = ""
+
+
+def load_curve(source: str | Path) -> Curve:
+    """Read a curve: PLY with or without edges, OBJ lines, SWC, GraphML, JSON; "-" is standard input.
+
+    Text and NumPy files give nodes without edges. Raises TiskelError where the
+    file is missing, damaged or of an unknown kind.
+    """
+    return parse_curve(read_bytes(source), source)
+
+
+def parse_curve(data: bytes, source: str | Path) -> Curve:
+    """Return the curve in bytes that were read from a source; see :func:`load_curve`."""
+    name = "stdin" if str(source) == STANDARD else Path(source).name
+    kind = Path(name).suffix.lower() if name != "stdin" else _kind(data)
+    if kind not in FORMATS:
+        raise TiskelError(
+            f"{name}: unknown kind of curve {kind or 'without a suffix'!r}; known are {', '.join(FORMATS)}"
+        )
+    try:
+        nodes, edges = _parse(kind, data, source, name)
+        places = np.array(nodes, np.float64).reshape(-1, 3)
+        links = np.array(edges, np.int64).reshape(-1, 2)
+    except TiskelError:
+        raise
+    except Exception as error:
+        raise TiskelError(f"{name} is not a valid {kind[1:].upper()} curve: {error}; export it again") from None
+    if len(links) and (links.min() < 0 or links.max() >= len(places)):
+        raise TiskelError(f"{name}: an edge names node {links.max()}, there are {len(places)}; export it again")
+    return Curve(places, links.astype(np.int32), name)
+
+
+def _kind(data: bytes) -> str:
+    start = data.lstrip()[:1]
+    return (
+        ".ply" if data.startswith(ply.MAGIC) else ".json" if start == b"{" else ".graphml" if start == b"<" else ".swc"
+    )
+
+
+def _parse(kind: str, data: bytes, source: str | Path, name: str) -> tuple[Any, Any]:
+    if kind == ".ply":
+        return _from_ply(data, name)
+    if kind in (".obj", ".swc"):
+        return (_from_obj if kind == ".obj" else _from_swc)(data.decode("utf-8").splitlines())
+    if kind == ".json":
+        return _from_json(json.loads(data))
+    if kind == ".graphml":
+        return _from_graphml(data)
+    return parse_cloud(data, source).points, ()
+
+
+def _from_ply(data: bytes, name: str) -> tuple[Any, Any]:
+    if stage_of(data) == "skeleton":
+        skeleton = parse_skeleton(data, name)
+        return skeleton.nodes, skeleton.edges
+    file = ply.parse(data, name)
+    if "edge" not in file:
+        return ply.points_of(file["vertex"].data), ()
+    edge = file["edge"].data
+    return ply.points_of(file["vertex"].data), np.stack([edge["vertex1"], edge["vertex2"]], axis=1)
+
+
+def _from_obj(lines: list[str]) -> tuple[Any, Any]:
+    """Return vertices and what line elements join; an index counts from 1, a negative one from the last vertex."""
+    nodes: list[list[float]] = []
+    edges: list[tuple[int, int]] = []
+    for words in map(str.split, lines):
+        if words[:1] == ["v"]:
+            nodes.append([float(word) for word in words[1:4]])
+        elif words[:1] == ["l"]:
+            named = [int(word.split("/")[0]) for word in words[1:]]
+            places = [i - 1 if i > 0 else len(nodes) + i for i in named]
+            edges += zip(places[:-1], places[1:], strict=True)
+    return nodes, edges
+
+
+def _from_swc(lines: list[str]) -> tuple[Any, Any]:
+    """Return samples and what joins them to their parents; ids may be any whole numbers."""
+    rows = [line.split() for line in map(str.strip, lines) if line and not line.startswith("#")]
+    place = {int(float(row[0])): i for i, row in enumerate(rows)}
+    parents = [int(float(row[6])) for row in rows]
+    edges = [(place[parent], i) for i, parent in enumerate(parents) if parent != -1]
+    return [[float(word) for word in row[2:5]] for row in rows], edges
+
+
+def _from_json(document: dict[str, Any]) -> tuple[Any, Any]:
+    """Return nodes as triples, or as objects with x, y, z and id (networkx node-link), and edges or links."""
+    nodes, links = document["nodes"], document.get("edges", document.get("links", ()))
+    place = {node["id"]: i for i, node in enumerate(nodes)} if nodes and isinstance(nodes[0], dict) else None
+    if place is None:
+        return nodes, links
+    ends = [(place[link["source"]], place[link["target"]]) for link in links]
+    return [[node[axis] for axis in "xyz"] for node in nodes], ends
+
+
+def _from_graphml(data: bytes) -> tuple[Any, Any]:
+    import networkx
+
+    network = networkx.read_graphml(io.BytesIO(data))
+    place = {node: i for i, node in enumerate(network.nodes)}
+    nodes = [[float(values[axis]) for axis in "xyz"] for _, values in network.nodes(data=True)]
+    return nodes, [(place[edge[0]], place[edge[1]]) for edge in network.edges]

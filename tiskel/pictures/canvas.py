@@ -1,0 +1,66 @@
+"""What all pictures share: figures without a screen, bytes without dates, views, colours."""
+
+import io
+from typing import Any
+
+import numpy as np
+
+from tiskel.arrays import Numbers, Points
+from tiskel.errors import TiskelError
+
+SHOWN_POINTS = 20_000  # more only blacken the picture
+CLOUD, CURVE, POINTS, INK = "#b9c2cc", "#c0392b", "#2471a3", "#1f3a5f"
+FORMATS = ("png", "svg", "pdf")
+SCALE = "viridis"  # of values from 0 to 1: dark is bad, bright is good
+DPI = 110
+
+
+def new_figure(width: float, height: float) -> Any:
+    """Return an empty matplotlib figure, in inches."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def rendered(figure: Any, kind: str = "png") -> bytes:
+    """Return the bytes of a figure as PNG, SVG or PDF: the same bytes for the same figure."""
+    import matplotlib
+
+    if kind not in FORMATS:
+        raise TiskelError(f"a picture cannot be written as {kind!r}; choose one of {', '.join(FORMATS)}")
+    metadata = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
+    out = io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": "tiskel"}):
+        figure.savefig(out, format=kind, dpi=DPI, metadata=metadata)
+    return out.getvalue()
+
+
+def picture_kind(target: str) -> str:
+    """Return the format that the suffix of a target asks for; PNG without one."""
+    suffix = target.rpartition(".")[2].lower() if "." in target else ""
+    return suffix or "png"
+
+
+def broad_view(cloud: Points) -> Points:
+    """Return two directions (2, 3) that show most of a cloud: its principal axes, each pointing up its longest part."""
+    axes = np.linalg.svd(cloud - cloud.mean(axis=0), full_matrices=False)[2][:2]
+    return np.asarray(axes * np.where(axes[np.arange(2), np.abs(axes).argmax(axis=1)] < 0, -1.0, 1.0)[:, None])
+
+
+def cloud_panel(panel: Any, cloud: Points, view: Points) -> None:
+    """Draw a cloud in grey, at one scale, without ticks."""
+    shown = cloud[:: max(1, len(cloud) // SHOWN_POINTS)] @ view.T
+    panel.scatter(*shown.T, s=1.5, c=CLOUD, linewidths=0)
+    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_xticks([])
+    panel.set_yticks([])
+
+
+def heat(panel: Any, places: Points, values: Numbers, view: Points, size: float = 5) -> Any:
+    """Draw places by their values from 0 to 1, those without a value as crosses; return what a colour bar needs."""
+    flat, known = places @ view.T, ~np.isnan(values)
+    panel.scatter(*flat[~known].T, s=2 * size, c=INK, marker="x", linewidths=0.6)
+    return panel.scatter(*flat[known].T, s=size, c=values[known], cmap=SCALE, vmin=0, vmax=1, linewidths=0)

@@ -1,0 +1,1 @@
+"""Measures of a skeleton: topology, loops, boundedness, inside, centredness, smoothness."""

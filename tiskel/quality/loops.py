@@ -1,0 +1,114 @@
+"""Loops: of the surface, of the solid it encloses, and of the curve.
+
+A closed surface of genus g has 2 g loops, the solid inside it g, and so has its
+curve skeleton; an open tube has one, its skeleton none. Only the loops of the
+solid are comparable to those of the curve.
+
+Of the surface: bars in H1 of the Delaunay-Rips complex that last to four times
+the length at which they are born (gaps of a random sample reach 3.7, the thinnest
+tubes that are sampled four points across 4.5).
+
+Of the solid: the winding number on a grid of the cloud's own spacing. Where it
+exceeds a level there are cubes; their loops follow from the Euler characteristic,
+components - loops + cavities = vertices - edges + faces - cubes. Thin parts and
+open ends have low winding numbers, so several levels are tried, and what they do
+not agree on is not decided.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage
+
+from tiskel import graph
+from tiskel.arrays import Numbers, Points
+from tiskel.params import MetricParams
+from tiskel.quality.subject import Subject
+from tiskel.quality.surface import Surface
+
+LEVELS = (0.25, 0.3, 0.4)  # winding numbers; noise outside stays below, tubes of one spacing's radius rise above
+STEP = 1.2  # of the grid, in spacings
+MAX_CELLS = 1_000_000
+COARSEST = 2.5  # spacings; on a coarser grid thin parts would be missed
+
+Grid = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Loops:
+    """Numbers of loops; None where they cannot be told, with the reason.
+
+    Attributes
+    ----------
+    surface : loops of the surface, from its persistent homology.
+    solid : handles of the solid inside.
+    graph : independent loops of the curve.
+    bars : (b, 2) births and deaths in H1 in normalised units, by falling ratio.
+    points : size of the subset that surface and solid were taken from.
+    """
+
+    surface: int | None
+    solid: int | None
+    graph: int | None
+    bars: Numbers
+    points: int
+    reasons: dict[str, str]
+
+
+def count_loops(bars: Numbers, surface: Surface, subject: Subject, params: MetricParams) -> Loops:
+    """Count the loops of a surface with bars (b, 2) in H1, of the solid inside it, and of the subject's curve."""
+    lasting = bars[:, 1] >= params.loop_ratio * bars[:, 0]
+    solid, reason = solid_loops(surface)
+    reasons = {"solid": reason} if reason else {}
+    curve = graph.loop_count(len(subject.nodes), subject.edges) if subject.curve_given else None
+    if curve is None:
+        reasons["graph"] = "no curve was given"
+    return Loops(int(lasting.sum()), solid, curve, bars, len(surface.points), reasons)
+
+
+def solid_loops(surface: Surface) -> tuple[int | None, str]:
+    """Return the handles of the solid inside a surface, or None and why they cannot be told."""
+    if not surface.trusted:
+        share = f"{surface.consistency:.0%}"
+        return None, f"the normals agree on an inside at {share} of the points only; the cloud is too sparse or open"
+    low, high = surface.points.min(axis=0), surface.points.max(axis=0)
+    step = _grid_step(high - low, surface.spacing)
+    if step > COARSEST * surface.spacing:
+        return None, f"a grid of {MAX_CELLS} cells is too coarse for the spacing of the points; thin the cloud"
+    winding = _winding_grid(surface, low, high, step)
+    found = [betti_numbers(winding > level)[1] for level in LEVELS]
+    if len(set(found)) > 1:
+        return None, f"{' or '.join(map(str, sorted(set(found))))} handles, depending on the level of the inside"
+    return found[0], ""
+
+
+def _grid_step(extent: Points, spacing: float) -> float:
+    """Return the side of the cells: the spacing's multiple, or what keeps the grid within its limit."""
+    step = STEP * spacing
+    cells = float(np.prod(extent / step + 4))
+    return step * float(np.cbrt(max(1.0, cells / MAX_CELLS)))
+
+
+def _winding_grid(surface: Surface, low: Points, high: Points, step: float) -> Numbers:
+    axes = [np.arange(a - 1.5 * step, b + 2.5 * step, step) for a, b in zip(low, high, strict=True)]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    return surface.winding_numbers(places.reshape(-1, 3)).reshape(places.shape[:3])
+
+
+def betti_numbers(cubes: Grid) -> tuple[int, int, int]:
+    """Return components, loops and cavities of a union of closed unit cubes, given as a grid of booleans."""
+    padded = np.pad(cubes, 1)
+    edges = sum(int(_touched(padded, axes).sum()) for axes in ((0, 1), (0, 2), (1, 2)))
+    faces = sum(int(_touched(padded, (axis,)).sum()) for axis in range(3))
+    euler = int(_touched(padded, (0, 1, 2)).sum()) - edges + faces - int(padded.sum())
+    components = int(ndimage.label(padded, np.ones((3, 3, 3)))[1])
+    cavities = int(ndimage.label(~padded)[1]) - 1
+    return components, components + cavities - euler, cavities
+
+
+def _touched(cubes: Grid, axes: tuple[int, ...]) -> Grid:
+    """Return which faces, edges or vertices between cubes, across the given axes, belong to a cube."""
+    for axis in axes:
+        cubes = np.take(cubes, range(1, cubes.shape[axis]), axis) | np.take(cubes, range(cubes.shape[axis] - 1), axis)
+    return cubes
