@@ -17,6 +17,7 @@ from tiskel.cli.metrics import metrics
 from tiskel.cli.run import run
 from tiskel.cli.shape import shape
 from tiskel.cli.skeleton import skeleton
+from tiskel.cli.stability import stability
 from tiskel.errors import TiskelError
 
 FAILED, INTERRUPTED = 1, 130
@@ -29,7 +30,7 @@ app = typer.Typer(
     help="Curve skeletons of point clouds. Stages chain through pipes: "
     "`tiskel contract in.ply | tiskel skeleton - -o out.ply`",
 )
-for command in (contract, skeleton, metrics, run, shape, convert, info, doctor):
+for command in (contract, skeleton, metrics, stability, run, shape, convert, info, doctor):
     app.command(no_args_is_help=command not in (doctor, shape))(command)
 
 

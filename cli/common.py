@@ -23,6 +23,8 @@ INPUT: dict[str, tuple[Any, Any]] = {
     "crop": (options.Crop, None),
     "outliers": (options.Outliers, False),
     "cap": (options.Cap, False),
+    "noise": (options.Noise, 0.0),
+    "noise_kind": (options.NoiseKind, "coordinates"),
     "seed": (options.Seed, 0),
 }
 

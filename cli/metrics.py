@@ -65,7 +65,6 @@ NoDiagonal = Annotated[
     bool, typer.Option("--no-diagonal", help="Match bars with bars only, as in print.", rich_help_panel="Method")
 ]
 MetricSeed = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.", rich_help_panel="Method")]
-AsJson = Annotated[bool, typer.Option("--json", help="JSON on a terminal too.", rich_help_panel="Output")]
 AsCsv = Annotated[bool, typer.Option("--csv", help="CSV instead of JSON.", rich_help_panel="Output")]
 HeatFile = Annotated[
     Path | None,
@@ -73,16 +72,6 @@ HeatFile = Annotated[
         "--ply",
         metavar="OUT",
         help="Also the values per point, as vertex properties.",
-        show_default=False,
-        rich_help_panel="Output",
-    ),
-]
-PlotFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--plot",
-        metavar="OUT",
-        help="Also a picture: PNG, SVG or PDF.",
         show_default=False,
         rich_help_panel="Output",
     ),
@@ -99,10 +88,10 @@ def metrics(
     no_diagonal: NoDiagonal = not METRICS.diagonal,
     normalise: o.Normalise = METRICS.normalise,
     seed: MetricSeed = METRICS.seed,
-    as_json: AsJson = False,
+    as_json: o.AsJson = False,
     as_csv: AsCsv = False,
     heat: HeatFile = None,
-    plot: PlotFile = None,
+    plot: o.Plot = None,
 ) -> None:
     """Say how good skeletons are: topology, boundedness, inside, centredness, smoothness, loops.
 

@@ -71,7 +71,30 @@ Crop = Annotated[
 ]
 Outliers = Annotated[bool, typer.Option("--outliers", help="Remove statistical outliers.", rich_help_panel="Input")]
 Cap = Annotated[bool, typer.Option("--cap", help="Close open tube ends.", rich_help_panel="Input")]
+Noise = Annotated[
+    float, typer.Option(metavar="SHARE", help="Add Gaussian noise, for experiments.", rich_help_panel="Input")
+]
+NoiseKind = Annotated[
+    str,
+    typer.Option(
+        metavar="coordinates|diagonal",
+        help="What the share is of: each centred coordinate, or half the diagonal.",
+        rich_help_panel="Input",
+    ),
+]
 Seed = Annotated[int, typer.Option(min=0, help="Of everything random.", rich_help_panel="Input")]
+
+AsJson = Annotated[bool, typer.Option("--json", help="JSON on a terminal too.", rich_help_panel="Output")]
+Plot = Annotated[
+    Path | None,
+    typer.Option(
+        "--plot",
+        metavar="OUT",
+        help="Also a picture: PNG, SVG or PDF.",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
 
 Method = Annotated[
     str,

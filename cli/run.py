@@ -1,9 +1,10 @@
 """``tiskel run``."""
 
-import html
 import json
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -12,12 +13,16 @@ import typer
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common, reads_cloud
+from tiskel.cli.report import report
 from tiskel.errors import TiskelError
 from tiskel.params import SkeletonParams
 
 if TYPE_CHECKING:
     from tiskel.contraction import Contraction
+    from tiskel.io.clouds import Cloud
+    from tiskel.quality.result import Quality
     from tiskel.skeleton import Skeleton
+    from tiskel.stability import Stability
 
 T = TypeVar("T")
 Folder = Annotated[
@@ -40,7 +45,7 @@ def run(
     *,
     conditioning: Mapping[str, Any],
 ) -> None:
-    """Do everything in one go: stage files, exports, a picture and a report in one folder.
+    """Do everything in one go: stage files, exports, measures, pictures and a report in one folder.
 
     `tiskel run scan.ply -o out/`
     """
@@ -49,35 +54,73 @@ def run(
     _make_folder(output)
     seconds: dict[str, float] = {}
     cloud, points = _timed(seconds, "read", lambda: stages.cloud_points(source, **conditioning))
-    from tiskel import contract, extract_skeleton
-    from tiskel.io.contraction_file import dump_contraction
-    from tiskel.io.exports import to_json, to_obj, to_swc
-    from tiskel.io.skeleton_file import dump_skeleton
-    from tiskel.pictures.skeleton import skeleton_picture
+    from tiskel import assess_stability, contract, evaluate, extract_skeleton
 
-    contraction = _timed(seconds, "contract", lambda: contract(points, params))
-    stages.tell_contraction(contraction)
-    skeleton = _timed(seconds, "skeleton", lambda: extract_skeleton(contraction, skeleton_params))
-    stages.tell_skeleton(skeleton)
-    picture = _timed(seconds, "picture", lambda: skeleton_picture(skeleton, f"{cloud.name}, {method}"))
-    files: dict[str, Callable[[], bytes]] = {
-        "contraction.ply": lambda: dump_contraction(contraction, cloud.source),
-        "skeleton.ply": lambda: dump_skeleton(skeleton, skeleton_params, cloud.source),
-        "skeleton.obj": lambda: to_obj(skeleton),
-        "skeleton.swc": lambda: to_swc(skeleton),
-        "skeleton.json": lambda: to_json(skeleton),
-        "skeleton.png": lambda: picture,
-        "report.html": lambda: report(cloud.name, contraction, skeleton).encode(),
-    }
+    c = _timed(seconds, "contract", lambda: contract(points, params))
+    stages.tell_contraction(c)
+    s = _timed(seconds, "skeleton", lambda: extract_skeleton(c, skeleton_params))
+    stages.tell_skeleton(s)
+    quality = _timed(seconds, "metrics", lambda: evaluate(s.cloud, c.points, s.nodes, s.edges, origin=c.origin))
+    stability = _timed(seconds, "stability", lambda: assess_stability(c))
+    console.say(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}")
+    made = Made(cloud, c, s, skeleton_params, quality, stability)
+    drawn = _timed(seconds, "pictures", made.pictures)
+    files: dict[str, Callable[[], bytes]] = {}
+    files |= {**made.stage_files(), **made.documents(), **{name: partial(bytes, data) for name, data in drawn.items()}}
     for name, make in files.items():
         stages.write(output / name, make)
-    seconds |= {
-        f"contract.{part}": sum(s.seconds.get(part, 0) for s in contraction.steps)
-        for part in contraction.steps[0].seconds
-    }
-    seconds["contract.rings"] = contraction.ring_seconds
+    seconds |= {f"contract.{part}": sum(t.seconds.get(part, 0) for t in c.steps) for part in c.steps[0].seconds}
+    seconds |= {"contract.rings": c.ring_seconds} | {f"metrics.{part}": t for part, t in quality.seconds.items()}
     stages.write(output / "timings.json", (json.dumps(seconds, indent=1) + "\n").encode)
     console.say(f"wrote {', '.join([*files, 'timings.json'])} to {output}")
+
+
+@dataclass(frozen=True)
+class Made:
+    """All results, and the files they become."""
+
+    cloud: "Cloud"
+    contraction: "Contraction"
+    skeleton: "Skeleton"
+    skeleton_params: SkeletonParams
+    quality: "Quality"
+    stability: "Stability"
+
+    def stage_files(self) -> dict[str, Callable[[], bytes]]:
+        from tiskel.io.contraction_file import dump_contraction
+        from tiskel.io.exports import to_json, to_obj, to_swc
+        from tiskel.io.heat_file import dump_heat
+        from tiskel.io.skeleton_file import dump_skeleton
+
+        source = self.cloud.source
+        return {
+            "contraction.ply": lambda: dump_contraction(self.contraction, source),
+            "skeleton.ply": lambda: dump_skeleton(self.skeleton, self.skeleton_params, source),
+            "skeleton.obj": lambda: to_obj(self.skeleton),
+            "skeleton.swc": lambda: to_swc(self.skeleton),
+            "skeleton.json": lambda: to_json(self.skeleton),
+            "metrics.ply": lambda: dump_heat(self.quality),
+        }
+
+    def documents(self) -> dict[str, Callable[[], bytes]]:
+        page = partial(report, self.cloud.name, self.contraction, self.skeleton, self.quality, self.stability)
+        return {
+            "metrics.json": lambda: _document(self.quality.as_dict()),
+            "stability.json": lambda: _document(self.stability.as_dict()),
+            "report.html": lambda: page().encode(),
+        }
+
+    def pictures(self) -> dict[str, bytes]:
+        from tiskel.pictures.quality import quality_picture
+        from tiskel.pictures.skeleton import skeleton_picture
+        from tiskel.pictures.stability import stability_picture
+
+        title = f"{self.cloud.name}, {self.contraction.params.method}"
+        return {
+            "skeleton.png": skeleton_picture(self.skeleton, title),
+            "metrics.png": quality_picture([(title, self.skeleton.cloud, self.quality)]),
+            "stability.png": stability_picture(self.contraction, self.stability, title),
+        }
 
 
 def _make_folder(folder: Path) -> None:
@@ -94,48 +137,5 @@ def _timed(seconds: dict[str, float], part: str, work: Callable[[], T]) -> T:
     return result
 
 
-def report(name: str, c: "Contraction", s: "Skeleton") -> str:
-    """Return one page: what went in, what came out, the steps, the picture."""
-    facts = {
-        "points": len(c.cloud),
-        "method": c.params.method,
-        "steps": len(c.steps),
-        "status": f"{c.status.value}: {c.status.advice}",
-        "points left": f"{len(c.points)} ({len(c.points) / len(c.cloud):.1%})",
-        "nodes": len(s.nodes),
-        "components": s.components,
-        "loops": s.loops,
-        "ends": s.ends,
-        "joints": s.joints,
-        "length": f"{s.length:.6g}",
-    }
-    head = ("step", "contraction weight", "ring ratio", "explained score", "points")
-    steps = [
-        (i, f"{t.contraction_weight:.4g}", f"{t.ring_ratio:.4f}", "" if t.score is None else f"{t.score:.5f}", t.points)
-        for i, t in enumerate(c.steps, 1)
-    ]
-    warnings = "".join(f"<li>{html.escape(line)}</li>" for line in (*c.warnings, *s.warnings))
-    table = "".join(_row(pair) for pair in facts.items())
-    history = _row(head, "th") + "".join(_row(step) for step in steps)
-    return PAGE.format(name=html.escape(name), table=table, warnings=warnings, history=history)
-
-
-PAGE = """<!doctype html>
-<meta charset="utf-8">
-<title>tiskel</title>
-<style>
-body {{ font: 15px sans-serif; margin: 2em; max-width: 75em }}
-td, th {{ padding: .2em .8em; text-align: right }}
-img {{ max-width: 100% }}
-</style>
-<h1>{name}</h1>
-<img src="skeleton.png" alt="the cloud and its curve skeleton">
-<table>{table}</table>
-<ul>{warnings}</ul>
-<h2>Contraction</h2>
-<table>{history}</table>
-"""
-
-
-def _row(cells: tuple[Any, ...], tag: str = "td") -> str:
-    return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
+def _document(values: dict[str, Any]) -> bytes:
+    return (json.dumps(values, allow_nan=False, indent=1) + "\n").encode()

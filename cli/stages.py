@@ -18,13 +18,29 @@ if TYPE_CHECKING:
 
 
 def cloud_points(
-    source: Path, *, voxel: float | None, sample: int | None, crop: str | None, outliers: bool, cap: bool, seed: int
+    source: Path,
+    *,
+    voxel: float | None,
+    sample: int | None,
+    crop: str | None,
+    outliers: bool,
+    cap: bool,
+    noise: float,
+    noise_kind: str,
+    seed: int,
 ) -> tuple["Cloud", "Points"]:
     """Read a cloud and condition it as the input options say."""
     from tiskel import ConditioningParams, condition, load_cloud
 
     params = ConditioningParams(
-        voxel=voxel, sample=sample, crop=_numbers("--crop", crop, 6), outliers=outliers, cap=cap, seed=seed
+        voxel=voxel,
+        sample=sample,
+        crop=_numbers("--crop", crop, 6),
+        outliers=outliers,
+        cap=cap,
+        noise=noise,
+        noise_kind=noise_kind,  # type: ignore[arg-type]
+        seed=seed,
     )
     cloud = load_cloud(source, mesh_samples=sample, seed=seed)
     console.warn(cloud.warnings)

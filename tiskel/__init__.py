@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from tiskel.params import ContractionParams as ContractionParams
     from tiskel.params import MetricParams as MetricParams
     from tiskel.params import SkeletonParams as SkeletonParams
+    from tiskel.params import StabilityParams as StabilityParams
     from tiskel.quality.evaluate import evaluate as evaluate
     from tiskel.quality.result import Quality as Quality
     from tiskel.shapes.make import ShapeParams as ShapeParams
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from tiskel.shapes.make import shape_graph as shape_graph
     from tiskel.skeleton import Skeleton as Skeleton
     from tiskel.skeleton import extract_skeleton as extract_skeleton
+    from tiskel.stability import Stability as Stability
+    from tiskel.stability import assess_stability as assess_stability
     from tiskel.trace import Status as Status
     from tiskel.trace import StepRecord as StepRecord
 
@@ -51,9 +54,12 @@ _HOME = {
     "ShapeParams": "shapes.make",
     "Skeleton": "skeleton",
     "SkeletonParams": "params",
+    "Stability": "stability",
+    "StabilityParams": "params",
     "Status": "trace",
     "StepRecord": "trace",
     "TiskelError": "errors",
+    "assess_stability": "stability",
     "condition": "conditioning",
     "contract": "contraction",
     "evaluate": "quality.evaluate",

@@ -1,13 +1,16 @@
 """What can be done to a cloud before the first stage; each off by default, each reported."""
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 
-from tiskel.arrays import Mask, Points, as_points, finite_rows
+from tiskel.arrays import Mask, Points, as_points, diagonal, finite_rows
 from tiskel.capping import cap_points
 from tiskel.errors import TiskelError
 from tiskel.neighbourhood import nearest_neighbours
+
+NoiseKind = Literal["coordinates", "diagonal"]
 
 OUTLIER_NEIGHBOURS = 17  # the point included; sixteen others, a common choice of statistical removal
 OUTLIER_DEVIATIONS = 2.0
@@ -22,6 +25,8 @@ class ConditioningParams:
     voxel: float | None = None  #: side of the cubes whose points become their mean
     sample: int | None = None  #: points of a random subset
     cap: bool = False  #: close open tube ends with flat discs of points
+    noise: float = 0.0  #: standard deviation of Gaussian noise, as a share
+    noise_kind: NoiseKind = "coordinates"  #: of what the share is: see :func:`with_noise`
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -33,12 +38,17 @@ class ConditioningParams:
                 )
         if self.voxel is not None and not (self.voxel > 0 and np.isfinite(self.voxel)):
             raise TiskelError(f"voxel must be a positive length in the cloud's units, got {self.voxel}")
+        if not (self.noise >= 0 and np.isfinite(self.noise)):
+            raise TiskelError(f"noise must be a share, 0 or more, got {self.noise}")
+        if self.noise_kind not in get_args(NoiseKind):
+            kinds = ", ".join(get_args(NoiseKind))
+            raise TiskelError(f"the kind of noise must be one of {kinds}, got {self.noise_kind!r}")
         if self.sample is not None and self.sample < 1:
             raise TiskelError(f"sample must be a positive number of points, got {self.sample}")
 
 
 def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple[str, ...]]:
-    """Crop, remove outliers, thin and cap a cloud, in this order; return it with a line per thing done.
+    """Crop, remove outliers, thin, cap and blur a cloud, in this order; return it with a line per thing done.
 
     Rows that are not finite are left for the next stage to count, unless
     something is asked for, which drops them here.
@@ -66,6 +76,9 @@ def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple
         added = cap_points(points)
         points = np.concatenate([points, added])
         report.append(f"capped open ends with {len(added)} points")
+    if params.noise > 0 and len(points):
+        points = with_noise(points, params.noise, params.noise_kind, params.seed)
+        report.append(f"added noise of {params.noise:.3g} of the {params.noise_kind}")
     if len(points) == 0:
         raise TiskelError(f"no point of {len(every)} is left after {'; '.join(report)}; loosen the options")
     return np.ascontiguousarray(points), tuple(report)
@@ -86,6 +99,19 @@ def _inliers(points: Points) -> Mask:
         return np.ones(len(points), bool)
     mean = np.sqrt(nearest_neighbours(points, OUTLIER_NEIGHBOURS)[1]).sum(axis=1) / (OUTLIER_NEIGHBOURS - 1)
     return np.asarray(mean <= mean.mean() + OUTLIER_DEVIATIONS * mean.std())
+
+
+def with_noise(points: Points, share: float, kind: NoiseKind = "coordinates", seed: int = 0) -> Points:
+    """Return points (n, 3) with Gaussian noise, as the published experiments have it.
+
+    "coordinates": the standard deviation is a share of each coordinate, taken
+    from the middle of the bounding box (the evaluation toolbox multiplies raw
+    coordinates, which depends on the origin). "diagonal": it is a share of half
+    the diagonal, the same everywhere, as in the chapter on contraction.
+    """
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    scale = points - middle if kind == "coordinates" else diagonal(points) / 2
+    return np.asarray(points + np.random.default_rng(seed).normal(size=points.shape) * share * scale)
 
 
 def voxel_means(points: Points, side: float) -> Points:

@@ -83,10 +83,13 @@ def test_run_writes_every_file(tiskel: Runner, cloud: Path, tmp_path: Path) -> N
     folder = tmp_path / "out" / "deep"
     names = {"contraction.ply", "report.html", "timings.json"}
     names |= {f"skeleton.{suffix}" for suffix in ("ply", "obj", "swc", "json", "png")}
+    names |= {f"metrics.{suffix}" for suffix in ("json", "ply", "png")} | {"stability.json", "stability.png"}
     assert {p.name for p in folder.iterdir()} == names
-    assert (folder / "skeleton.png").read_bytes().startswith(b"\x89PNG")
     assert json.loads((folder / "timings.json").read_text())["contract"] > 0
-    assert "skeleton.png" in (folder / "report.html").read_text()
+    for name in ("skeleton.png", "metrics.png", "stability.png"):
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
+        assert name in (folder / "report.html").read_text()
+    assert json.loads((folder / "metrics.json").read_text())["inside"]["curve"] > 0
     piped = tiskel("skeleton", "-", data=tiskel("contract", cloud.name).stdout).stdout
     assert (folder / "skeleton.ply").read_bytes() == piped
 

@@ -117,3 +117,17 @@ def test_metrics_of_nothing_and_of_the_wrong_things(tiskel: Runner, skeletons: l
     assert "no file nowhere.ply" in one_error_line(tiskel("metrics", "gls.ply", "nowhere.ply"))
     assert "bars must be one of toolbox, max" in one_error_line(tiskel("metrics", "gls.ply", "--bars", "all"))
     assert "cannot be written as 'gif'" in one_error_line(tiskel("metrics", "gls.ply", "--plot", "a.gif"))
+
+
+def test_stability_is_one_document_and_a_picture(tiskel: Runner, skeletons: list[str], tmp_path: Path) -> None:
+    made = [tiskel("stability", "gls.c.ply", "--threads", n, "--plot", "s.png") for n in (1, 2)]
+    assert made[0].returncode == 0, made[0].stderr.decode()
+    assert made[0].stdout == made[1].stdout
+    document = json.loads(made[0].stdout)
+    assert (document["file"], document["method"]) == ("gls.c.ply", "gls")
+    assert isinstance(document["stable"], bool)
+    assert not any(step["control_passes"] for step in document["steps"])
+    assert (tmp_path / "s.png").read_bytes().startswith(b"\x89PNG")
+    piped = tiskel("stability", "-", data=(tmp_path / "gls.c.ply").read_bytes())
+    assert json.loads(piped.stdout)["steps"] == document["steps"]
+    assert "a contraction file is needed" in one_error_line(tiskel("stability", skeletons[0]))

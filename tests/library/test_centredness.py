@@ -20,7 +20,7 @@ def cylinder(count: int = 2500, capped: bool = True) -> Points:
     radius = RADIUS * np.sqrt(np.arange(200) / 200)
     flat = np.stack([radius * np.cos(turn[:200]), radius * np.sin(turn[:200])], axis=1)
     ends = [np.column_stack([flat, np.full(200, z)]) for z in (-HALF, HALF)]
-    return np.concatenate([wall, *(ends if capped else ())])
+    return np.asarray(np.concatenate([wall, *ends]) if capped else wall)
 
 
 def axis(shift: float = 0.0) -> tuple[Points, np.ndarray]:
@@ -32,7 +32,7 @@ def axis(shift: float = 0.0) -> tuple[Points, np.ndarray]:
 
 def ellipse_points(turn: np.ndarray, a: float = 3.0, b: float = 1.0, tilt: float = 0.4) -> np.ndarray:
     rotation = np.array([[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]])
-    return np.stack([a * np.cos(turn), b * np.sin(turn)], axis=1) @ rotation.T + [5.0, -2.0]
+    return np.asarray(np.stack([a * np.cos(turn), b * np.sin(turn)], axis=1) @ rotation.T + [5.0, -2.0])
 
 
 @pytest.mark.parametrize("capped", [True, False])

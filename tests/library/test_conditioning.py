@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from tiskel import ConditioningParams, ShapeParams, TiskelError, condition, make_shape, shape_graph
 from tiskel.capping import cap_points
-from tiskel.conditioning import voxel_means
+from tiskel.conditioning import voxel_means, with_noise
 
 POINTS = np.random.default_rng(0).random((2000, 3))
 
@@ -74,3 +74,20 @@ def test_wrong_settings_are_refused(settings: dict[str, object]) -> None:
 def test_a_crop_that_leaves_nothing_says_so() -> None:
     with pytest.raises(TiskelError, match="no point of 2000 is left"):
         condition(POINTS, ConditioningParams(crop=(5, 5, 5, 6, 6, 6)))
+
+
+def test_noise_of_each_kind_has_its_size_and_seed() -> None:
+    points = np.random.default_rng(0).random((20_000, 3)) * [4, 1, 1] + 7
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    by_coordinate = with_noise(points, 0.05) - points
+    ratio = by_coordinate / (points - middle)
+    assert ratio.std() == pytest.approx(0.05, rel=0.02)  # 60 000 values: half a per cent
+    even = with_noise(points, 0.05, "diagonal") - points
+    assert even.std(axis=0) == pytest.approx([0.05 * np.linalg.norm([4, 1, 1]) / 2] * 3, rel=0.03)
+    np.testing.assert_array_equal(with_noise(points, 0.1, seed=3), with_noise(points, 0.1, seed=3))
+    blurred, report = condition(points, ConditioningParams(noise=0.05))
+    np.testing.assert_array_equal(blurred, points + by_coordinate)
+    assert report == ("added noise of 0.05 of the coordinates",)
+    for bad in ({"noise": -1.0}, {"noise": np.nan}, {"noise_kind": "salt"}):
+        with pytest.raises(TiskelError, match="noise"):
+            ConditioningParams(**bad)

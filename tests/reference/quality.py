@@ -26,7 +26,7 @@ def cell_of(d: Points, side: int) -> int:
     axis = int(np.argmax(np.abs(d)))
     face = 2 * axis + (d[axis] < 0)
     column, row = (min(side - 1, int((d[(axis + k) % 3] / abs(d[axis]) + 1) * 0.5 * side)) for k in (1, 2))
-    return (face * side + row) * side + column
+    return int((face * side + row) * side + column)
 
 
 def covered_cells(place: Points, cloud: Points, spacing: np.ndarray, side: int) -> set[int]:

@@ -1,0 +1,80 @@
+"""The page that ``tiskel run`` writes."""
+
+import html
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tiskel.contraction import Contraction
+    from tiskel.quality.result import Quality
+    from tiskel.skeleton import Skeleton
+    from tiskel.stability import Stability
+
+
+def report(name: str, c: "Contraction", s: "Skeleton", q: "Quality", stability: "Stability") -> str:
+    """Return one page: what went in, what came out, the steps, the measures, the pictures."""
+    facts = {
+        "points": len(c.cloud),
+        "method": c.params.method,
+        "steps": len(c.steps),
+        "status": f"{c.status.value}: {c.status.advice}",
+        "points left": f"{len(c.points)} ({len(c.points) / len(c.cloud):.1%})",
+        "nodes": len(s.nodes),
+        "components": s.components,
+        "loops": s.loops,
+        "ends": s.ends,
+        "joints": s.joints,
+        "length": f"{s.length:.6g}",
+    }
+    head = ("step", "contraction weight", "ring ratio", "explained score", "points")
+    steps = [
+        (i, f"{t.contraction_weight:.4g}", f"{t.ring_ratio:.4f}", "" if t.score is None else f"{t.score:.5f}", t.points)
+        for i, t in enumerate(c.steps, 1)
+    ]
+    lines = (*c.warnings, *s.warnings, *q.warnings)
+    warnings = "".join(f"<li>{html.escape(line)}</li>" for line in lines)
+    table = "".join(_row(pair) for pair in facts.items())
+    history = _row(head, "th") + "".join(_row(step) for step in steps)
+    return PAGE.format(
+        name=html.escape(name),
+        table=table,
+        warnings=warnings,
+        history=history,
+        stability=html.escape(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}"),
+        measures="".join(map(_row, _measures(q))),
+    )
+
+
+def _measures(quality: "Quality") -> list[tuple[str, str, str]]:
+    """Return heading, value and, where there is none, the reason of every measure."""
+    from tiskel.quality.tables import COLUMNS, row_of, said
+
+    document = quality.as_dict()
+    row = row_of(document)
+    reasons = [document[column.path[0]].get("reasons", {}).get(column.path[1], "") for column in COLUMNS]
+    return [(c.heading, said(row[c.key]), reason) for c, reason in zip(COLUMNS, reasons, strict=True)]
+
+
+PAGE = """<!doctype html>
+<meta charset="utf-8">
+<title>tiskel</title>
+<style>
+body {{ font: 15px sans-serif; margin: 2em; max-width: 75em }}
+td, th {{ padding: .2em .8em; text-align: right }}
+img {{ max-width: 100% }}
+</style>
+<h1>{name}</h1>
+<img src="skeleton.png" alt="the cloud and its curve skeleton">
+<table>{table}</table>
+<ul>{warnings}</ul>
+<h2>Quality</h2>
+<img src="metrics.png" alt="the measures as heat maps, barcodes and histograms">
+<table>{measures}</table>
+<h2>Contraction</h2>
+<table>{history}</table>
+<p>{stability}</p>
+<img src="stability.png" alt="turns of normals and changes of curvature, step by step">
+"""
+
+
+def _row(cells: tuple[Any, ...], tag: str = "td") -> str:
+    return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"

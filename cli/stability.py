@@ -1,0 +1,60 @@
+"""``tiskel stability``."""
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+import typer
+
+from tiskel.cli import console, stages
+from tiskel.cli import options as o
+from tiskel.cli.common import common
+
+if TYPE_CHECKING:
+    from tiskel.stability import Stability
+
+
+@common
+def stability(source: o.Source, as_json: o.AsJson = False, plot: o.Plot = None) -> None:
+    """Say whether a contraction is stable: how normals and curvatures change from step to step.
+
+    Reads contraction.ply. A table on a terminal, JSON otherwise:
+    `tiskel contract scan.ply | tiskel stability - | jq .stable`
+    """
+    from tiskel import assess_stability
+    from tiskel.io.contraction_file import read_contraction
+
+    contraction = read_contraction(source)
+    result = assess_stability(contraction)
+    if plot is not None:
+        from tiskel.pictures.canvas import picture_kind
+        from tiskel.pictures.stability import stability_picture
+
+        title = f"{source.name}, {contraction.params.method}"
+        stages.write(plot, lambda: stability_picture(contraction, result, title, picture_kind(str(plot))))
+    if as_json or not sys.stdout.isatty():
+        method = contraction.params.method
+        typer.echo(json.dumps({"file": source.name, "method": method, **result.as_dict()}, allow_nan=False))
+        return
+    from rich.console import Console
+
+    Console().print(_table(result))
+    Console().print(f"{'stable' if result.stable else 'not stable'}: {result.reason}", markup=False)
+
+
+def _table(result: "Stability"):  # type: ignore[no-untyped-def]
+    """Return one column per step."""
+    steps = result.steps
+    rows = [
+        ["turn of normals / pi: mean", *(f"{step.angle.mean:.3f}" for step in steps)],
+        ["spread", *(f"{step.angle.spread:.3f}" for step in steps)],
+        ["skewness", *(f"{step.angle.skewness:.2f}" for step in steps)],
+        ["peaks", *(str(step.angle.peaks) for step in steps)],
+        ["distance from a curve's", *(f"{step.distance:.3f}" for step in steps)],
+        ["that of random signs", *(f"{step.control_distance:.3f}" for step in steps)],
+        ["change of curvature: median", *(f"{step.median_curvature:+.4f}" for step in steps)],
+        ["in the hull before", *(f"{step.in_hull:.3f}" for step in steps)],
+        ["inside the cloud", *("" if step.in_cloud is None else f"{step.in_cloud:.3f}" for step in steps)],
+        ["stable", *("yes" if step.stable else "no" for step in steps)],
+    ]
+    return console.table("stability of contraction", ["step", *map(str, range(1, len(steps) + 1))], rows)
