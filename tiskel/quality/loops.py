@@ -12,7 +12,8 @@ Of the solid: the winding number on a grid of the cloud's own spacing. Where it
 exceeds a level there are cubes; their loops follow from the Euler characteristic,
 components - loops + cavities = vertices - edges + faces - cubes. Thin parts and
 open ends have low winding numbers, so several levels are tried, and what they do
-not agree on is not decided.
+not agree on is not decided. Nor is a solid with more handles than its surface has
+loops: each handle is one of them.
 """
 
 from dataclasses import dataclass
@@ -58,13 +59,16 @@ class Loops:
 
 def count_loops(bars: Numbers, surface: Surface, subject: Subject, params: MetricParams) -> Loops:
     """Count the loops of a surface with bars (b, 2) in H1, of the solid inside it, and of the subject's curve."""
-    lasting = bars[:, 1] >= params.loop_ratio * bars[:, 0]
+    lasting = int((bars[:, 1] >= params.loop_ratio * bars[:, 0]).sum())
     solid, reason = solid_loops(surface)
+    if solid is not None and solid > lasting:  # every handle of the solid is a loop of its surface, too
+        reason = f"{solid} handles, but only {lasting} loops of the surface last; the cloud is too sparse for its tubes"
+        solid = None
     reasons = {"solid": reason} if reason else {}
     curve = graph.loop_count(len(subject.nodes), subject.edges) if subject.curve_given else None
     if curve is None:
         reasons["graph"] = "no curve was given"
-    return Loops(int(lasting.sum()), solid, curve, bars, len(surface.points), reasons)
+    return Loops(lasting, solid, curve, bars, len(surface.points), reasons)
 
 
 def solid_loops(surface: Surface) -> tuple[int | None, str]:
