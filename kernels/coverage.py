@@ -7,7 +7,7 @@ from .runtime import started
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)
 Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
 Indices = ti.types.ndarray(dtype=ti.i32, ndim=1)
-Marks = ti.types.ndarray(dtype=ti.i8, ndim=2)
+Table = ti.types.ndarray(dtype=ti.i32, ndim=2)
 
 SIDE = 8  # cells along each edge of the cube's faces
 CELLS = 6 * SIDE * SIDE
@@ -55,12 +55,12 @@ def across(d):
 
 
 @ti.func
-def mark(marks: ti.template(), areas: ti.template(), row: ti.i32, d) -> ti.f64:
-    """Mark the cell of a direction; return its share of the sphere where it was not marked before."""
+def mark(seen: ti.template(), areas: ti.template(), row: ti.i32, d, point: ti.i32) -> ti.f64:
+    """Give the cell of a direction to a point; return its share of the sphere where it was nobody's before."""
     cell = cell_of(d)
     new = 0.0
-    if marks[row, cell] == 0:
-        marks[row, cell] = ti.i8(1)
+    if seen[row, cell] < 0:
+        seen[row, cell] = point
         new = areas[cell]
     return new
 
@@ -74,14 +74,14 @@ def _coverage(
     areas: Numbers,  # (CELLS,) shares of the sphere
     enough: ti.f64,  # share at which to stop looking
     # outputs
-    marks: Marks,  # (m, CELLS) scratch
+    seen: Table,  # (m, CELLS) row of the point first seen in each cell, -1 where there is none
     covered: Numbers,  # (m,) share of the sphere that is seen
     coincident: Indices,  # (m,) points found at the query itself
 ):
     """Look at the points outward from a start along their order, until enough of the sphere is covered."""
     for i in queries:
         for c in range(CELLS):
-            marks[i, c] = ti.i8(0)
+            seen[i, c] = -1
         share = 0.0
         same = 0
         below, above = starts[i] - 1, starts[i]
@@ -91,13 +91,12 @@ def _coverage(
                 if j >= 0 and j < points.shape[0]:
                     d = points[j] - queries[i]
                     if d.norm_sqr() > 0.0:
-                        share += mark(marks, areas, i, d)
+                        share += mark(seen, areas, i, d, j)
                         if spacing[j] * spacing[j] * SIDE * SIDE > d.norm_sqr():  # the disc meets several cells
                             u, v = across(d)
                             for k in range(9):
-                                share += mark(
-                                    marks, areas, i, d + spacing[j] * ((k % 3 - 1.0) * u + (k // 3 - 1.0) * v)
-                                )
+                                aside = (k % 3 - 1.0) * u + (k // 3 - 1.0) * v
+                                share += mark(seen, areas, i, d + spacing[j] * aside, j)
                     else:
                         same += 1
             below -= 1

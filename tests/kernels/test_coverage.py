@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 from reference.quality import cell_of, covered_cells
 from tiskel.arrays import Points
 from tiskel.kernels import coverage as kernel
+from tiskel.neighbourhood import morton_curve
 from tiskel.quality import boundedness
 from tiskel.quality.centredness import slab_members
 
@@ -49,12 +50,15 @@ def test_coverage_counts_each_cell_once() -> None:
     cloud = GENERATOR.normal(size=(60, 3))
     places = np.concatenate([GENERATOR.normal(size=(20, 3)) * 0.5, cloud[:2]])
     spacing = cKDTree(cloud).query(cloud, boundedness.DISC_NEIGHBOURS)[0].mean(axis=1)
-    covered, coincident = boundedness.coverage(places, cloud)
-    for place, share in zip(places, covered, strict=True):
+    curve = morton_curve(cloud)
+    seen = boundedness.coverage(places, curve, spacing[curve.order])
+    for place, share in zip(places, seen.shares, strict=True):
         expected = AREAS[sorted(covered_cells(place, cloud, spacing, kernel.SIDE))].sum()
         assert share == pytest.approx(expected, abs=1e-12) or (share >= boundedness.ENOUGH and share <= expected)
-    assert coincident.tolist() == [0] * 20 + [1, 1]
-    assert (covered < boundedness.ENOUGH).any()  # or the whole way was never gone
+    assert seen.coincident.tolist() == [0] * 20 + [1, 1]
+    assert (seen.shares < boundedness.ENOUGH).any()  # or the whole way was never gone
+    for row, share in zip(seen.seen, seen.shares, strict=True):
+        assert AREAS[row >= 0].sum() == pytest.approx(share, abs=1e-12)
 
 
 def test_slabs_hold_what_is_near_their_planes() -> None:

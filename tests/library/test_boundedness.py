@@ -65,6 +65,14 @@ def test_classes_agree_with_the_hull_of_all_directions(toolbox: Load) -> None:
     assert np.mean(doubtful) >= 0.95
 
 
+def test_many_directions_are_thinned_without_harm() -> None:
+    """A cap of 60 000 directions about a hole: the cubes are 0.016 wide, and so far may the rim draw back."""
+    turn = np.random.default_rng(2).normal(size=(120_000, 3))
+    directions = turn / np.linalg.norm(turn, axis=1)[:, None]
+    cap = directions[directions[:, 2] < 0.1]
+    assert hull_share(np.zeros(3), cap) == pytest.approx(hull_beta(np.zeros(3), cap), abs=0.01)
+
+
 def test_clear_cases_are_settled_without_a_hull(capsule: Points) -> None:
     axis = np.stack([np.zeros(9), np.zeros(9), np.linspace(-0.6, 0.6, 9)], axis=1)
     inside, outside = boundedness(axis, capsule), boundedness(axis + [5.0, 0, 0], capsule)

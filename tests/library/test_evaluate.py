@@ -95,6 +95,16 @@ def test_a_skeleton_outside_its_cloud_is_bad_and_measured() -> None:
     assert q["centredness"]["points"] == q["centredness"]["curve"] == 0
 
 
+def test_unbounded_points_have_no_centredness_however_their_originals_lie() -> None:
+    cloud, points, *_ = shape()
+    outside = points + [5, 0, 0]
+    around = outside + np.where(np.arange(len(points)) % 2 == 0, 1.0, -1.0)[:, None] * [0, 0.3, 0]
+    q = evaluate(cloud, outside, origin=around)
+    assert q.points is not None
+    assert q.points.raw_centredness.mean() > 0.5
+    assert (q.points.centredness == 0).all()
+
+
 def test_an_empty_curve_is_null_with_its_reason() -> None:
     cloud, points, *_ = shape()
     q = strict(evaluate(cloud, points, np.zeros((0, 3)), np.zeros((0, 2))))
@@ -142,7 +152,11 @@ def test_few_skeletal_points_are_measured_as_far_as_they_go(count: int) -> None:
 
 def test_where_counts_differ_the_nearest_originals_stand_in_and_it_is_said() -> None:
     cloud, points, *_ = shape()
-    assert evaluate(cloud, points[::3]).correspondence == "nearest"
+    q = evaluate(cloud, points[::3])
+    assert q.correspondence == "nearest"
+    assert q.points is not None
+    nearest = cloud[np.linalg.norm(cloud - points[::3][:, None], axis=2).argmin(axis=1)]
+    np.testing.assert_allclose(q.points.originals, nearest, atol=1e-12)
     assert evaluate(cloud, points[::3], origin=cloud[::3]).correspondence == "given"
     with pytest.raises(TiskelError, match="origin must have a row for each of the 200 points, got 600"):
         evaluate(cloud, points[::3], origin=cloud)

@@ -8,7 +8,8 @@ from tiskel import MetricParams, ShapeParams, evaluate, make_shape, shape_graph
 from tiskel.arrays import Points
 from tiskel.quality.barcode import barcode
 from tiskel.quality.curve import curve_samples
-from tiskel.quality.loops import betti_numbers, solid_loops
+from tiskel.quality.loops import betti_numbers, count_loops, solid_loops
+from tiskel.quality.subject import make_subject
 from tiskel.quality.surface import Surface, oriented_surface, propagated_signs, ring_areas
 
 GENERATOR = np.random.default_rng(6)
@@ -137,6 +138,17 @@ def test_undecided_handles_are_null_with_the_candidates() -> None:
     assert (1, "") in found
     assert (0, "") in found
     assert (None, "0 or 1 handles, depending on the level of the inside") in found
+
+
+def test_more_handles_than_the_surface_has_loops_are_not_decided() -> None:
+    """Each handle of a solid is a loop of its surface: where that does not show, the cloud is too sparse to say."""
+    cloud, targets = shape("torus", 2000)
+    subject = make_subject(cloud, None, None, None, None, "side")
+    surface = oriented_surface(cloud, targets)
+    enough, none = (count_loops(np.array([[1.0, d]]), surface, subject, MetricParams()) for d in (9.0, 2.0))
+    assert (enough.surface, enough.solid) == (1, 1)
+    assert (none.surface, none.solid) == (0, None)
+    assert "only 0 loops of the surface last" in none.reasons["solid"]
 
 
 def test_large_clouds_are_thinned_by_seed_and_it_is_said() -> None:

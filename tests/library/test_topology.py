@@ -12,6 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from reference.fixtures import Load
 from tiskel import MetricParams, ShapeParams, TiskelError, make_shape, shape_graph
 from tiskel.arrays import Numbers, Points
+from tiskel.graph import component_count
 from tiskel.quality.barcode import barcode, delaunay_edges
 from tiskel.quality.distances import bottleneck, wasserstein
 from tiskel.quality.topology import bars_kept, compare_topology
@@ -44,6 +45,13 @@ def test_delaunay_lengths_give_the_bars_of_the_dense_matrix(name: str) -> None:
     # ripser works in single precision, relative to the coordinates
     tolerance = 1e-6 * max(1.0, np.abs(points).max() if name == "far away" else np.ptp(points, axis=0).max())
     np.testing.assert_allclose(barcode(points).deaths, dense_deaths(points), atol=tolerance)
+
+
+@pytest.mark.parametrize("name", CLOUDS)
+def test_delaunay_edges_connect_every_point(name: str) -> None:
+    """Also those that the triangulation drops because they coincide with others."""
+    points = CLOUDS[name]
+    assert component_count(len(points), delaunay_edges(points)) == 1
 
 
 def test_contracted_clouds_have_the_bars_of_the_dense_matrix(toolbox: Load) -> None:

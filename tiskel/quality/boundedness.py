@@ -10,7 +10,8 @@ The hull costs milliseconds per place, so what is clear is settled without it.
 Where directions cover a share c of the sphere, beta is hardly below c (2 - c), the
 value of a single cap. Each point covers the cells that the disc of its spacing
 meets. Outside the convex hull of the cloud all directions lie in
-a half-space, and beta is below 0.75. For the rest the hull is taken, of the
+a half-space, and beta is below 0.75. For the rest the hull is taken: of one vector
+per cell, whose beta can only be too small, and where that does not do, of all
 vectors along the rim of what is covered and of one in each cell further in.
 """
 
@@ -21,7 +22,8 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from tiskel.arrays import Indices, Mask, Numbers, Points, diagonal
-from tiskel.neighbourhood import morton_curve
+from tiskel.neighbourhood import MortonCurve, morton_curve
+from tiskel.quality.curve import unit
 
 BOUNDED = 0.75  # beta of a point on a flat, endless surface
 DISC_NEIGHBOURS = 7  # the point included; the mean distance is the radius of the disc a point stands for
@@ -29,6 +31,8 @@ CLEAR = 0.75  # covered share; of two thousand unbounded places in five clouds o
 ENOUGH = 0.8  # covered share at which to stop looking: a single cap has beta 0.96
 COVERED, OUTSIDE, HULL = 0, 1, 2  #: what settled a place
 TOUCHING = 0.36  # radians between the centres of touching cells; the largest is 0.25 wide
+MANY, FINE = 8192, 64  # more directions than so many are thinned to one in every cube of a side of 1 / 64
+BLOCK = 8192  # places at a time, so that what each of them sees fits into memory
 TOLERANCE = 1e-9  # of the diagonal, on which side of the convex hull a place is
 
 
@@ -39,7 +43,8 @@ class Boundedness:
     Attributes
     ----------
     bounded : (m,).
-    beta : (m,), exact to 0.01 where the hull settled it; elsewhere that of a single cap.
+    beta : (m,), where the hull settled it exact to 0.01 below the threshold and a lower bound above; elsewhere that of
+        a single cap.
     settled_by : (m,) 0 coverage, 1 outside the convex hull of the cloud, 2 hull of the unit vectors.
     coincident : (m,) points of the cloud at the very place, which have no direction and are left out.
     """
@@ -59,30 +64,57 @@ class Boundedness:
 
 def boundedness(places: Points, cloud: Points) -> Boundedness:
     """Return how places (m, 3) are surrounded by a cloud (n, 3); both in one unit, any."""
-    covered, coincident = coverage(places, cloud)
-    beta = covered * (2 - covered)
-    settled_by = np.full(len(places), COVERED, np.int32)
-    open_to_doubt = np.flatnonzero(covered < CLEAR)
-    outside = outside_hull(places[open_to_doubt], cloud)
-    settled_by[open_to_doubt] = np.where(outside, OUTSIDE, HULL)
-    for i in open_to_doubt[outside]:
-        beta[i] = min(beta[i], np.nextafter(BOUNDED, 0))
-    for i in open_to_doubt[~outside]:
-        beta[i] = hull_share(places[i], cloud)
-    return Boundedness(beta >= BOUNDED, beta, settled_by, coincident)
+    blocks = np.array_split(places, max(1, -(-len(places) // BLOCK)))
+    curve, parts = morton_curve(cloud), []
+    spacing = cKDTree(cloud).query(curve.points, min(DISC_NEIGHBOURS, len(cloud)))[0].mean(axis=1)
+    for block in blocks:
+        parts.append(_judged(block, coverage(block, curve, spacing), curve.points))
+    return Boundedness(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
-def coverage(places: Points, cloud: Points) -> tuple[Numbers, Indices]:
-    """Return the share (m,) of the sphere of directions that a cloud covers, up to 0.8, and coincident points (m,)."""
+@dataclass(frozen=True)
+class Coverage:
+    """What is seen from places.
+
+    Attributes
+    ----------
+    shares : (m,) of the sphere, up to 0.8.
+    seen : (m, cells) row of the first point in each cell of the cube map, -1 for none.
+    coincident : (m,) points at the very place.
+    """
+
+    shares: Numbers
+    seen: Indices
+    coincident: Indices
+
+
+def coverage(places: Points, curve: MortonCurve, spacing: Numbers) -> Coverage:
+    """Return how much of the sphere of directions a cloud along its Morton curve covers; spacing (n,) of its points."""
     from tiskel.kernels import coverage as kernel
 
-    covered, coincident = np.empty(len(places)), np.empty(len(places), np.int32)
-    marks = np.empty((len(places), kernel.CELLS), np.int8)
-    curve = morton_curve(cloud)
-    spacing = cKDTree(cloud).query(curve.points, min(DISC_NEIGHBOURS, len(cloud)))[0].mean(axis=1)
+    shares, coincident = np.empty(len(places)), np.empty(len(places), np.int32)
+    seen = np.empty((len(places), kernel.CELLS), np.int32)
     starts, areas = curve.places(places), cell_areas(kernel.SIDE)
-    kernel.coverage(places, starts, curve.points, spacing, areas, ENOUGH, marks, covered, coincident)
-    return covered, coincident
+    queries = np.ascontiguousarray(places)
+    kernel.coverage(queries, starts, curve.points, spacing, areas, ENOUGH, seen, shares, coincident)
+    return Coverage(shares, seen, coincident)
+
+
+def _judged(places: Points, covered: Coverage, cloud: Points) -> tuple[Mask, Numbers, Indices, Indices]:
+    """Return bounded, beta, what settled it, and coincident points."""
+    beta = covered.shares * (2 - covered.shares)
+    settled_by = np.full(len(places), COVERED, np.int32)
+    doubtful = np.flatnonzero(covered.shares < CLEAR)
+    outside = outside_hull(places[doubtful], cloud)
+    settled_by[doubtful] = np.where(outside, OUTSIDE, HULL)
+    for i in doubtful[outside]:
+        beta[i] = min(beta[i], np.nextafter(BOUNDED, 0))
+    for i in doubtful[~outside]:
+        rows = np.unique(covered.seen[i][covered.seen[i] >= 0])
+        beta[i] = _hull_area(unit(cloud[rows] - places[i])) / (4 * np.pi)
+        if beta[i] < BOUNDED:  # of some of the vectors; all of them may do better
+            beta[i] = hull_share(places[i], cloud)
+    return beta >= BOUNDED, beta, settled_by, covered.coincident
 
 
 def cell_areas(side: int) -> Numbers:
@@ -109,29 +141,36 @@ def outside_hull(places: Points, cloud: Points) -> Mask:
 
 def hull_share(place: Points, cloud: Points) -> float:
     """Return beta of one place, from the hull of the directions that matter."""
-    vectors, cells = _directions(place, cloud)
-    return _hull_area(vectors[_that_matter(cells)]) / (4 * np.pi)
+    vectors = unit(cloud[_that_matter(_cells(place, cloud))] - place)
+    return _hull_area(_thinned(vectors) if len(vectors) > MANY else vectors) / (4 * np.pi)
 
 
-def _directions(place: Points, cloud: Points) -> tuple[Points, Indices]:
-    """Return unit vectors to the points that are not at the place, and the cells they are in."""
+def _thinned(vectors: Points) -> Points:
+    """Return the first of the unit vectors in every cube of a fine grid."""
+    cells = np.floor(vectors * FINE).astype(np.int64) + FINE
+    keys = (cells[:, 0] * 4 * FINE + cells[:, 1]) * 4 * FINE + cells[:, 2]
+    return np.asarray(vectors[np.unique(keys, return_index=True)[1]])
+
+
+def _cells(place: Points, cloud: Points) -> Indices:
+    """Return the cells in which a place sees the points of a cloud, -1 for a point at the place."""
     from tiskel.kernels import coverage as kernel
 
     cells = np.empty(len(cloud), np.int32)
-    kernel.cells(np.ascontiguousarray(place[None]), cloud, cells)
-    away = (cloud - place)[cells >= 0]
-    return away / np.linalg.norm(away, axis=1)[:, None], cells[cells >= 0]
+    kernel.cells(np.ascontiguousarray(place[None]), np.ascontiguousarray(cloud), cells)
+    return cells
 
 
-def _that_matter(cells: Indices) -> Indices:
-    """Return all rows whose cell touches an empty one, and the first row of every other cell."""
+def _that_matter(cells: Indices) -> Mask:
+    """Return which points are in a cell that touches an empty one, or first in another cell."""
     touching = touching_cells()
-    filled = np.zeros(len(touching), bool)
-    filled[cells] = True
-    rim = np.asarray(~filled[touching].all(axis=1))
+    first = np.full(len(touching) + 1, -1)  # the last place is for points without a cell
+    first[cells[::-1]] = np.arange(len(cells))[::-1]
+    filled = first[:-1] >= 0
+    rim = np.append(~filled[touching].all(axis=1), False)
     matter = rim[cells]
-    matter[np.unique(cells, return_index=True)[1]] = True
-    return np.flatnonzero(matter).astype(np.int32)
+    matter[first[:-1][filled]] = True
+    return np.asarray(matter)
 
 
 @cache
