@@ -214,6 +214,8 @@ def test_a_comparison_marks_the_best_value_of_each_column() -> None:
 def test_pictures_of_everything_and_of_nothing_are_drawn() -> None:
     cloud, points, nodes, edges = shape()
     whole, bare = evaluate(cloud, points, nodes, edges), evaluate(cloud)
+    broken = np.vstack([cloud, [[np.nan, 0, 0]]])
+    assert quality_picture([("broken", broken, bare)]) == quality_picture([("broken", cloud, bare)])
     picture = quality_picture([("whole", cloud, whole), ("bare", cloud, bare)])
     assert picture.startswith(b"\x89PNG")
     assert picture == quality_picture([("whole", cloud, whole), ("bare", cloud, bare)])

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Points, finite_rows
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, heat, new_figure, rendered
 from tiskel.quality.result import Quality
 
@@ -18,7 +18,8 @@ def quality_picture(qualities: Sequence[tuple[str, Points, Quality]], kind: str 
     """Return a picture of (name, cloud (n, 3), quality) each: barcodes, heat maps of points and curve, histograms."""
     figure = new_figure(WIDTH, 3 * HEIGHT * len(qualities))
     panels = figure.subplots(3 * len(qualities), COLUMNS, squeeze=False)
-    for number, (name, cloud, quality) in enumerate(qualities):
+    for number, (name, given, quality) in enumerate(qualities):
+        cloud = given[finite_rows(given)]
         rows = panels[3 * number : 3 * number + 3]
         view = broad_view(cloud)
         _curve(rows[0][0], name, cloud, quality, view)

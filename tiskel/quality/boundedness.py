@@ -8,11 +8,11 @@ tube pass it; see :mod:`tiskel.quality.surface` for a true inside test.
 
 The hull costs milliseconds per place, so what is clear is settled without it.
 Where directions cover a share c of the sphere, beta is hardly below c (2 - c), the
-value of a single cap. Each point covers the cells that the disc of its spacing
-meets. Outside the convex hull of the cloud all directions lie in
-a half-space, and beta is below 0.75. For the rest the hull is taken: of one vector
-per cell, whose beta can only be too small, and where that does not do, of all
-vectors along the rim of what is covered and of one in each cell further in.
+value of a single cap; each point covers the cells that the disc of its spacing
+meets. Outside the convex hull of the cloud all directions lie in a half-space,
+and beta is below 0.75. For the rest the hull is taken: of one vector per cell,
+whose beta can only be too small, and where that does not do, of all vectors along
+the rim of what is covered and of one in each cell further in.
 """
 
 from dataclasses import dataclass
