@@ -13,7 +13,8 @@ TOPOLOGY = {
     "capsule": (1, 0, 2), "banana": (1, 0, 2), "carrot": (1, 0, 2), "egg": (1, 0, 2), "dumbbell": (1, 0, 2),
     "hammer": (1, 0, 3), "y": (1, 0, 3), "cross": (1, 0, 4), "hand": (1, 0, 6), "quadruped": (1, 0, 5),
     "table": (1, 0, 4), "torus": (1, 1, 0), "two-holed-torus": (1, 2, 0), "mug": (1, 1, 2), "helix": (1, 0, 2),
-    "tunnel": (1, 0, 2),
+    "tunnel": (1, 0, 2), "duck": (1, 0, 2), "dog": (1, 0, 8), "starfish": (1, 0, 6), "tree": (1, 0, 32),
+    "ladder": (1, 4, 4), "chair": (1, 2, 4), "knot": (1, 1, 0), "links": (2, 2, 0), "fork": (1, 0, 5),
 }  # fmt: skip
 
 
@@ -108,4 +109,4 @@ def test_wrong_settings_are_refused(settings: dict[str, float]) -> None:
 
 def test_an_unknown_shape_names_the_known_ones() -> None:
     with pytest.raises(TiskelError, match="choose one of capsule"):
-        shape_graph("duck")
+        shape_graph("unicorn")

@@ -1,10 +1,10 @@
 """Barcodes and their distances: exact, and what they say of simple shapes."""
 
-import gudhi
 import gudhi.hera
 import numpy as np
+import persim
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from ripser import ripser
 from scipy.optimize import linear_sum_assignment
@@ -77,18 +77,21 @@ def assigned(a: Numbers, b: Numbers) -> float:
 
 
 @given(deaths, deaths)
+@example(np.array([1.0, 3.0]), np.array([3.0, 3.0, 4.0, 3.0]))  # 1.5; gudhi.bottleneck_distance 3.13 says 2
 @settings(max_examples=200, deadline=None)
+@pytest.mark.filterwarnings("ignore:dgm. has points with non-finite:UserWarning")
 def test_distances_equal_those_of_other_libraries(a: Numbers, b: Numbers) -> None:
     diagrams = [np.stack([np.zeros(len(d)), d], axis=1) for d in (a, b)]
-    assert bottleneck(a, b) == pytest.approx(gudhi.bottleneck_distance(*diagrams), abs=1e-9)
+    assert bottleneck(a, b) == pytest.approx(persim.bottleneck(*diagrams), abs=1e-9)
     assert wasserstein(a, b) == pytest.approx(assigned(a, b), abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_wasserstein_distances_of_long_barcodes_equal_those_of_hera(seed: int) -> None:
+def test_distances_of_long_barcodes_equal_those_of_hera(seed: int) -> None:
     generator = np.random.default_rng(seed)
     a, b = generator.gamma(2, size=150), generator.gamma(1.5, size=120)
     diagrams = [np.stack([np.zeros(len(d)), d], axis=1) for d in (a, b)]
+    assert bottleneck(a, b) == pytest.approx(gudhi.hera.bottleneck_distance(*diagrams, delta=1e-3), rel=1.1e-3)
     near = gudhi.hera.wasserstein_distance(*diagrams, order=1, internal_p=np.inf, delta=1e-3)
     assert wasserstein(a, b) == pytest.approx(near, rel=1.1e-3)  # hera promises its delta, relative
 
@@ -98,7 +101,7 @@ def test_wasserstein_distances_of_long_barcodes_equal_those_of_hera(seed: int) -
 def test_distances_are_symmetric_and_the_diagonal_only_helps(a: Numbers, b: Numbers) -> None:
     for distance in (bottleneck, wasserstein):
         assert distance(a, b) == pytest.approx(distance(b, a), abs=1e-12)
-        assert distance(a, a) == 0
+        assert distance(a, a) == pytest.approx(0, abs=1e-12)
         if len(a) == len(b):
             assert distance(a, b) <= distance(a, b, diagonal=False) + 1e-12
 
