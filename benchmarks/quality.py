@@ -85,9 +85,11 @@ def mean(rows: list[Row], key: str) -> float:
     return float(np.mean([row[key] for row in rows if row[key] is not None]))
 
 
-HEAD = """| setting | method | components and loops right | ends found | spurious ends | to truth | 95 % | from truth | 95 % |\
- inside | seconds |
-|---|---|---|---|---|---|---|---|---|---|---|"""
+COLUMNS = (
+    "setting", "method", "components and loops right", "ends found", "spurious ends",
+    "to truth", "95 %", "from truth", "95 %", "inside", "seconds",
+)  # fmt: skip
+HEAD = "| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS)
 
 
 def page(rows: list[Row], settings: list[str]) -> str:

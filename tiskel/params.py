@@ -101,11 +101,12 @@ class MetricParams:
 class StabilityParams:
     """Settings of :func:`tiskel.assess_stability`.
 
-    The thresholds were found on the sixteen shapes, five scans and models, a
-    box and a ball, each contracted by lbc and gls: what contracts to a curve
-    has distances of 0.02 to 0.10, box and ball of 0.21 and more, and nothing
-    lies between 0.10 and 0.14. Curves have median changes of curvature below
-    0.016, clumps and tubes that are still thick above 0.03.
+    The thresholds were found on sixteen shapes, five scans and models, a box
+    and a ball, each contracted by lbc and gls, and held on nine more shapes:
+    what contracts to a curve has distances of 0.02 to 0.11, box and ball of
+    0.21 and more, and nothing lies between 0.11 and 0.14. Curves have median
+    changes of curvature below 0.016, clumps and tubes that are still thick
+    above 0.03.
     """
 
     neighbours: int = 9  #: whose scatter gives normal and curvature, the point included [T]
