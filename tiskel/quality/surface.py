@@ -140,7 +140,7 @@ def propagated_signs(neighbours: Indices, normals: Points) -> tuple[Numbers, Ind
     i = np.repeat(np.arange(count), neighbours.shape[1] - 1)
     j = neighbours[:, 1:].ravel()
     keys = np.unique(np.minimum(i, j) * np.int64(count) + np.maximum(i, j))
-    i, j = keys // count, keys % count
+    i, j = (keys // count).astype(np.int32), (keys % count).astype(np.int32)  # all that older SciPy's trees take
     weight = 1 - np.abs(np.einsum("ij,ij->i", normals[i], normals[j])) + 1e-6  # zeros would be no edges
     tree = minimum_spanning_tree(sparse.coo_array((weight, (i, j)), shape=(count, count)).tocsr())
     _, part = connected_components(tree, directed=False)
