@@ -194,7 +194,7 @@ def test_missing_files_folders_and_wrong_stages(tiskel: Runner, cloud: Path, tmp
 def test_wrong_values_and_wrong_usage(tiskel: Runner, cloud: Path) -> None:
     assert "method must be one of gls, lbc" in one_error_line(tiskel("contract", cloud.name, "--method", "magic"))
     assert "--crop needs 6 numbers" in one_error_line(tiskel("contract", cloud.name, "--crop", "1,2"))
-    assert "no shape is called 'duck'" in one_error_line(tiskel("shape", "duck"))
+    assert "no shape is called 'unicorn'" in one_error_line(tiskel("shape", "unicorn"))
     assert "TISKEL_NUM_THREADS must be" in tiskel("contract", cloud.name, TISKEL_NUM_THREADS="many").stderr.decode()
     for words in (
         ("contract",),
