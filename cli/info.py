@@ -2,7 +2,7 @@
 
 import json
 import sys
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -13,11 +13,9 @@ from tiskel.cli.common import common
 if TYPE_CHECKING:
     from tiskel.arrays import Points
 
-AsJson = Annotated[bool, typer.Option("--json", help="JSON on a terminal too.")]
-
 
 @common
-def info(source: o.Source, as_json: AsJson = False) -> None:
+def info(source: o.Source, as_json: o.AsJson = False) -> None:
     """Say what a file holds: points and extent of a cloud, steps of a contraction, counts of a skeleton.
 
     A table on a terminal, JSON otherwise: `tiskel info curve.ply | jq .skeleton.ends`

@@ -56,7 +56,7 @@ def evaluate(
     subject = make_subject(cloud, points, nodes, edges, origin, params.normalise)
     watch = Stopwatch()
     with watch.measure("inside"):
-        surface = oriented_surface(subject.cloud, subject.targets(), params.seed)
+        surface = oriented_surface(subject.cloud, subject.targets, params.seed)
     topology, loops = _topology_and_loops(subject, surface, params, watch)
     of_points, of_curve = _measures(subject, surface, params, watch)
     return Quality(
@@ -96,7 +96,7 @@ def _loop_part(subject: Subject, surface: Surface, params: MetricParams) -> Surf
     rows = np.random.default_rng(params.seed).choice(len(subject.cloud), params.loop_points, replace=False)
     rows.sort()
     thinned = np.ascontiguousarray(subject.cloud[rows])
-    return oriented_surface(thinned, subject.targets()[rows], params.seed)
+    return oriented_surface(thinned, subject.targets[rows], params.seed)
 
 
 def _topology(subject: Subject, known: Points, bars: Barcode, params: MetricParams) -> Topology | None:

@@ -1,6 +1,7 @@
 """What is measured: a cloud, skeletal points with their originals, a curve; checked, cleaned and normalised."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -49,8 +50,9 @@ class Subject:
     frame: Frame
     warnings: tuple[str, ...]
 
+    @cached_property
     def targets(self) -> Points:
-        """Return (n, 3) the place that each point of the cloud contracts to, as far as that is known.
+        """(n, 3), the place that each point of the cloud contracts to, as far as that is known.
 
         That of the nearest original; without skeletal points the nearest place
         on the curve; without either the middle of the cloud.
