@@ -99,8 +99,8 @@ Plot = Annotated[
 Method = Annotated[
     str,
     typer.Option(
-        metavar="gls|lbc",
-        help="GLSkeleton (Wen et al. 2024), or Laplacian-based contraction (Cao et al. 2010).",
+        metavar="robust|gls|lbc",
+        help="By fronts over the cloud; GLSkeleton (Wen et al. 2024); Laplacian-based contraction (Cao et al. 2010).",
         rich_help_panel="Method",
     ),
 ]
@@ -108,7 +108,7 @@ Neighbours = Annotated[
     int | None,
     typer.Option(
         metavar="K",
-        help="Nearest neighbours, the point included. [default: 0.012 n, within 8 and 30]",
+        help="Nearest neighbours, the point included. [default: 14 for robust, else 0.012 n within 8 and 30]",
         show_default=False,
         rich_help_panel="Method",
     ),
@@ -116,7 +116,7 @@ Neighbours = Annotated[
 MaxSteps = Annotated[
     int | None,
     typer.Option(
-        metavar="N", help="Step limit. [default: 10 for gls, 20 for lbc]", show_default=False, rich_help_panel="Method"
+        metavar="N", help="Step limit. [default: 3 for robust, 10 for gls, 20 for lbc]", show_default=False, rich_help_panel="Method"
     ),
 ]
 Normalise = Annotated[

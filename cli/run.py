@@ -60,7 +60,7 @@ def run(
     stages.tell_contraction(c)
     s = _timed(seconds, "skeleton", lambda: extract_skeleton(c, skeleton_params))
     stages.tell_skeleton(s)
-    quality = _timed(seconds, "metrics", lambda: evaluate(s.cloud, c.points, s.nodes, s.edges, origin=c.origin))
+    quality = _timed(seconds, "metrics", lambda: evaluate(s.cloud, s.contracted, s.nodes, s.edges, origin=s.origin))
     stability = _timed(seconds, "stability", lambda: assess_stability(c))
     console.say(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}")
     made = Made(cloud, c, s, skeleton_params, quality, stability)

@@ -21,9 +21,10 @@ from tiskel.gls import contract_gls
 from tiskel.lbc import contract_lbc
 from tiskel.params import ContractionParams
 from tiskel.rings import Rings
+from tiskel.robust.fronts import contract_robust
 from tiskel.trace import Status, StepRecord, Trace
 
-LOOPS = {"gls": contract_gls, "lbc": contract_lbc}
+LOOPS = {"robust": contract_robust, "gls": contract_gls, "lbc": contract_lbc}
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ class Contraction:
     status : why the contraction stopped.
     warnings : what a user should know about the input or the result.
     params : the settings.
+    sections : (m,) int32, by robust: the section each point belongs to, a connected piece of what the last front
+        passed in one stride, -1 for debris; levels : (m,) int32, the number of the stride. None by the others.
     ring_seconds : wall time of neighbours and rings.
     """
 
@@ -61,6 +64,8 @@ class Contraction:
     status: Status
     warnings: tuple[str, ...]
     params: ContractionParams
+    sections: Indices | None = None
+    levels: Indices | None = None
     ring_seconds: float = 0.0
 
     def survivor_of(self) -> Indices:
@@ -76,9 +81,10 @@ class Contraction:
 def contract(points: npt.ArrayLike, params: ContractionParams | None = None) -> Contraction:
     """Contract a cloud towards its medial curve.
 
-    Methods: "gls", GLSkeleton (Wen et al. 2024), and "lbc", Laplacian-based
-    contraction (Cao et al. 2010). Departures from print are listed in
-    :mod:`tiskel.lbc` and :mod:`tiskel.reduction`.
+    Methods: "robust", by fronts over the original cloud (:mod:`tiskel.robust.fronts`),
+    "gls", GLSkeleton (Wen et al. 2024), and "lbc", Laplacian-based contraction
+    (Cao et al. 2010). Departures from print are listed in :mod:`tiskel.lbc` and
+    :mod:`tiskel.reduction`.
 
     Parameters
     ----------
@@ -148,5 +154,7 @@ def _assembled(
         status=trace.status,
         warnings=warnings,
         params=params,
+        sections=trace.sections,
+        levels=trace.levels,
         ring_seconds=trace.ring_seconds,
     )

@@ -10,7 +10,7 @@ from typing import Literal, get_args
 
 from tiskel.errors import TiskelError
 
-Method = Literal["gls", "lbc"]
+Method = Literal["robust", "gls", "lbc"]
 Normalisation = Literal["side", "diagonal"]
 Solver = Literal["scipy", "cholmod"]
 Bars = Literal["toolbox", "max"]
@@ -23,9 +23,9 @@ SIDE = 1.6  #: length that normalisation gives the longest side or the diagonal 
 class ContractionParams:
     """Settings of :func:`tiskel.contract`; lengths in normalised units, weights without unit."""
 
-    method: Method = "gls"
-    neighbours: int | None = None  #: k nearest, the point included; None: clip(round(0.012 n), 8, 30) [T]
-    max_steps: int | None = None  #: None: 10 for gls, 20 for lbc [T]
+    method: Method = "robust"
+    neighbours: int | None = None  #: k nearest, the point included; None: 14 for robust, else clip(round(0.012 n), 8, 30) [T]
+    max_steps: int | None = None  #: None: 3 for robust, 10 for gls, 20 for lbc [T]
     normalise: Normalisation = "side"  #: what is scaled to 1.6: the longest side [T], or the diagonal (Wen et al.)
     solver: Solver = "scipy"
     growth: float = 3.0  #: s_L, factor of the contraction weight per step [T]
@@ -50,11 +50,12 @@ class ContractionParams:
 
     def neighbours_for(self, count: int) -> int:
         """Return k for a cloud of so many points."""
-        return min(count, self.neighbours or min(max(round(0.012 * count), 8), 30))
+        usual = 14 if self.method == "robust" else published_neighbours(count)
+        return min(count, self.neighbours or usual)
 
     def step_limit(self) -> int:
         """Return the largest number of steps of the chosen method."""
-        return self.max_steps or {"gls": 10, "lbc": 20}[self.method]
+        return self.max_steps or {"robust": 3, "gls": 10, "lbc": 20}[self.method]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,6 +120,11 @@ class StabilityParams:
     def __post_init__(self) -> None:
         _at_least("neighbours", self.neighbours, 4)
         _at_least("bins", self.bins, 2)
+
+
+def published_neighbours(count: int) -> int:
+    """Return k = clip(round(0.012 n), 8, 30), and no more than there are points [T]."""
+    return min(count, max(round(0.012 * count), 8), 30)
 
 
 def _among(name: str, value: str, allowed: tuple[str, ...]) -> None:

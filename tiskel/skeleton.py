@@ -9,11 +9,13 @@ if TYPE_CHECKING:
     import networkx
 
 from tiskel import graph
-from tiskel.arrays import Indices, Numbers, Points, diagonal
+from tiskel.arrays import Indices, Numbers, Points, diagonal, normalisation
 from tiskel.collapse import collapse_triangles, inherited_edges
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.params import SkeletonParams
+from tiskel.robust.build import build, nodes_of_points
+from tiskel.robust.doubts import doubts
 from tiskel.sampling import front_samples
 
 
@@ -25,11 +27,13 @@ class Skeleton:
     ----------
     nodes : (v, 3).
     edges : (e, 2) int32, lower node first.
-    radius : (v,), mean distance of a node's points of the cloud to it; 0 for a node without points.
+    radius : (v,), of the fitted round cones by robust; else the mean distance of a node's points of the cloud to it,
+        0 for a node without points.
     branches : node lists from joint or end to joint or end; a closed one repeats its first node.
     node_of_point : (n,) int32, the node of every point of the cloud.
     cloud : (n, 3); input_rows : (n,) int32, their rows in the input.
-    contracted, origin : (m, 3), the contracted points and where they came from; empty where unknown.
+    contracted, origin : (m, 3), the contracted points, by robust on the curve, and where they came from; empty where
+        unknown.
     rows : (m,) int32, rows of the cloud of the contracted points.
     warnings : what a user should know.
     """
@@ -96,24 +100,56 @@ class Skeleton:
 
 
 def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = None) -> Skeleton:
-    """Turn a contracted cloud into a curve skeleton (Cao et al. 2010, section 4).
+    """Turn a contracted cloud into a curve skeleton.
 
-    Sampling by a front of balls, joining by first foreign ring member, and
-    collapsing of triangles are as published. Beyond that, unless ``params.raw``,
-    spurs of a single edge shorter than the local radius are removed. Radii,
-    branches and the map from points to nodes are given in both cases.
+    What method robust contracted becomes the graph of its sections, cleaned,
+    and fitted to the original cloud as a curve of round cones
+    (:mod:`tiskel.robust.build`); ``contracted`` of the result are the points'
+    feet on it, and the warnings say where it is in doubt.
+
+    What lbc and gls contracted, and everything if ``params.raw``, is sampled by
+    a front of balls, joined by first foreign ring members, and rid of triangles
+    as published (Cao et al. 2010, section 4); unless ``params.raw``, spurs of a
+    single edge shorter than the local radius go, too.
 
     Raises TiskelError where the contracted cloud is empty.
     """
     params = params or SkeletonParams()
-    c = contraction
-    if len(c.points) == 0:
+    if len(contraction.points) == 0:
         raise TiskelError("the contraction holds no point; run tiskel contract again")
+    if contraction.sections is not None and contraction.levels is not None and not params.raw:
+        return _fitted_skeleton(contraction, contraction.sections, contraction.levels)
+    skeleton = _published_skeleton(contraction, params)
+    return skeleton if params.raw else prune_spurs(skeleton)
+
+
+def _fitted_skeleton(c: Contraction, sections: Indices, levels: Indices) -> Skeleton:
+    frame = normalisation(c.origin)
+    origin, k = frame.apply(c.origin), c.params.neighbours_for(len(c.rows))
+    built = build(origin, frame.apply(c.points), sections, levels, k)
+    nodes, contracted = frame.undo(built.curve.nodes), c.points.copy()
+    contracted[built.feet.rows] = frame.undo(built.feet.places(built.curve))
+    return Skeleton(
+        nodes=nodes,
+        edges=built.curve.edges,
+        radius=built.curve.radii / frame.scale,
+        branches=graph.branches(len(nodes), built.curve.edges),
+        node_of_point=nodes_of_points(built)[c.survivor_of()],
+        cloud=c.cloud,
+        input_rows=c.input_rows,
+        contracted=contracted,
+        origin=c.origin,
+        rows=c.rows,
+        warnings=doubts(built),
+    )
+
+
+def _published_skeleton(c: Contraction, params: SkeletonParams) -> Skeleton:
     samples, owner = front_samples(c.points, params.radius * diagonal(c.cloud))
     joined = inherited_edges(c.rings, owner, c.points[samples])
     nodes, edges, into = collapse_triangles(c.points[samples], joined)
     node_of_point = into[owner][c.survivor_of()]
-    skeleton = Skeleton(
+    return Skeleton(
         nodes=nodes,
         edges=edges,
         radius=node_radii(nodes, c.cloud, node_of_point),
@@ -126,7 +162,6 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
         rows=c.rows,
         warnings=_warnings(nodes),
     )
-    return skeleton if params.raw else prune_spurs(skeleton)
 
 
 def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:

@@ -38,7 +38,7 @@ class StepRecord:
 
     Attributes
     ----------
-    contraction_weight : W_L of the step.
+    contraction_weight : W_L of the step; 0 for robust, which has none.
     ring_ratio : summed ring sizes after the solve, over the summed first ring sizes of the same points.
     score, score_change : explained score of the contracted cloud, and the quantity that theta is held against (gls).
     points : points left after the step.
@@ -64,6 +64,7 @@ class Trace:
     rings : of these points, by their place in ``rows``.
     merged_into, merged_step : (n,) row that each removed point was merged into, and the step, from 1; -1 elsewhere.
     history : positions of the points left after each step, with their rows.
+    sections, levels : (n,) by robust, see :class:`tiskel.Contraction`.
     """
 
     points: Points
@@ -75,6 +76,8 @@ class Trace:
     steps: tuple[StepRecord, ...]
     status: Status
     ring_seconds: float
+    sections: Indices | None = None
+    levels: Indices | None = None
 
 
 class Stopwatch:

@@ -2,8 +2,8 @@
 
 Elements: ``vertex``, the contracted points, each with its original position
 (x0 y0 z0), its row in ``cloud`` and its ring (by place in ``vertex``; closed is
-1 where the last member connects to the first); ``cloud``, every finite input
-point with its row in the input, the row of ``cloud`` it was merged into and the
+1 where the last member connects to the first), by robust also its section and
+level; ``cloud``, every finite input point with its row in the input, the row of ``cloud`` it was merged into and the
 step of that (-1: it is left; step 0: a duplicate); ``history``, the positions
 of the points that are left after each step, step by step.
 """
@@ -40,6 +40,7 @@ def dump_contraction(c: Contraction, source: dict[str, str] | None = None) -> by
             **ply.xyz(c.origin, ORIGIN),
             "row": c.rows,
             "closed": c.rings.closed.astype(np.uint8),
+            **({} if c.sections is None or c.levels is None else {"section": c.sections, "level": c.levels}),
             "ring": rings,
         },
         {"ring": ("u2", "i4")},
@@ -83,9 +84,17 @@ def parse_contraction(data: bytes, name: str) -> Contraction:
             status=Status(facts["status"]),
             warnings=tuple(facts["warnings"]),
             params=ContractionParams(**facts["params"]),
+            **_sections(vertex),
         )
     except (KeyError, ValueError, TypeError) as error:
         raise TiskelError(f"{name} is a damaged contraction file: {error}; run tiskel contract again") from None
+
+
+def _sections(vertex: Any) -> dict[str, Any]:
+    """Return what only robust writes."""
+    if "section" not in (vertex.dtype.names or ()):
+        return {}
+    return {"sections": np.array(vertex["section"], np.int32), "levels": np.array(vertex["level"], np.int32)}
 
 
 def source_of(data: bytes, name: str) -> dict[str, str]:

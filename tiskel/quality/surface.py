@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, mini
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
 from tiskel.neighbourhood import morton_curve, principal_axes, surroundings
-from tiskel.params import ContractionParams
+from tiskel.params import published_neighbours
 from tiskel.rings import Rings
 
 NORMAL_NEIGHBOURS = 9  # the point included; as many as the published normals have
@@ -85,7 +85,7 @@ class Surface:
 
 def oriented_surface(points: Points, targets: Points, seed: int = 0) -> Surface:
     """Return the surface of a cloud (n, 3) of distinct points; targets (n, 3) is where each contracts to."""
-    neighbours, _, rings = surroundings(points, ContractionParams().neighbours_for(len(points)))
+    neighbours, _, rings = surroundings(points, published_neighbours(len(points)))
     near = np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS])
     normals = principal_axes(points, near)[1][:, 2]
     areas = ring_areas(points, rings)
@@ -94,20 +94,20 @@ def oriented_surface(points: Points, targets: Points, seed: int = 0) -> Surface:
     sign, part = propagated_signs(near, normals)
     votes = np.bincount(part, areas * outward * sign)
     by_propagation = sign * np.where(votes < 0, -1.0, 1.0)[part]
-    probes = np.sort(np.random.default_rng(seed).permutation(len(points))[:PROBES]).astype(np.int32)
     made = [
-        _checked(Surface(points, normals * sign[:, None], areas, name), probes)
+        checked(Surface(points, normals * sign[:, None], areas, name), seed)
         for name, sign in (("skeleton", by_skeleton), ("propagation", by_propagation))
     ]
     return max(made, key=lambda surface: surface.consistency)
 
 
-def _checked(surface: Surface, probes: Indices) -> Surface:
-    """Return the surface with the share of probes that have an inside behind them and an outside before them.
+def checked(surface: Surface, seed: int) -> Surface:
+    """Return the surface with the share of probed points that have an inside behind them and an outside before them.
 
     One spacing away, or two where that is better: noise reaches further than
     one, thin tubes are hardly thicker than two.
     """
+    probes = np.sort(np.random.default_rng(seed).permutation(len(surface.points))[:PROBES])
     step = surface.normals[probes] * np.sqrt(surface.areas[probes])[:, None]
     shares = []
     for spacings in (1, 2):

@@ -1,0 +1,86 @@
+"""From sections to a curve skeleton: the graph, its clean-up, and the fit."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tiskel.arrays import Indices, Points
+from tiskel.quality.surface import Surface
+from tiskel.robust.bridges import bridged
+from tiskel.robust.cones import Feet, fit_cones
+from tiskel.robust.curve import ConeCurve
+from tiskel.robust.cycles import without_filled_cycles
+from tiskel.robust.growth import with_missed_limbs
+from tiskel.robust.joints import merged_joints, placed_joints
+from tiskel.robust.limbs import with_tips, without_contained_ends, without_explained_limb, without_stubs
+from tiskel.robust.network import Network, neighbour_network
+from tiskel.robust.sections import section_curve
+
+ROUNDS, ROUNDS_AGAIN = 4, 2  # of the fit, and after a change to the graph
+TIPS = 3  # nodes that an end may grow by
+
+
+@dataclass(frozen=True)
+class Built:
+    """A fitted curve, and what it was made from.
+
+    Attributes
+    ----------
+    curve : the curve; feet : where the points stand on it.
+    network : the neighbour graph; surface : the oriented cloud.
+    gaps : how many were bridged.
+    """
+
+    curve: ConeCurve
+    feet: Feet
+    network: Network
+    surface: Surface
+    gaps: int
+
+
+def build(points: Points, contracted: Points, section: Indices, level: Indices, k: int) -> Built:
+    """Return the curve of a cloud (n, 3) whose points contract to (n, 3), with their sections and levels (n,)."""
+    network = neighbour_network(points, k)
+    surface = network.oriented(contracted)
+    curve = section_curve(network, section, level)
+    curve = without_filled_cycles(curve, network, surface, fitted=False)
+    curve = merged_joints(without_stubs(curve, points))
+    curve = placed_joints(without_contained_ends(curve), surface)
+    curve, at = fit_cones(curve, points, ROUNDS)
+    grown = with_missed_limbs(curve, network, at)
+    if grown is not None:
+        curve, at = fit_cones(placed_joints(without_contained_ends(grown), surface), points, ROUNDS)
+    curve, at = _cleaned(curve, at, network, surface)
+    for _ in range(TIPS):
+        grown = with_tips(curve, points, at, network.spacing)
+        if grown is None:
+            break
+        curve, at = fit_cones(grown, points, ROUNDS_AGAIN + 1)
+    curve, gaps = bridged(curve, network)
+    _, at = fit_cones(curve, points, 0)
+    return Built(curve, at, network, surface, gaps)
+
+
+def _cleaned(curve: ConeCurve, at: Feet, network: Network, surface: Surface) -> tuple[ConeCurve, Feet]:
+    """Take away, now that nodes are where they should be, filled cycles and limbs that explain nothing."""
+    closed = without_filled_cycles(curve, network, surface, fitted=True)
+    if len(closed.nodes) < len(curve.nodes):
+        curve, at = fit_cones(closed, network.points, ROUNDS_AGAIN)
+    for _ in range(len(curve.nodes)):
+        fewer = without_explained_limb(curve, network.points, network.spacing)
+        if fewer is None:
+            break
+        curve, at = fit_cones(fewer, network.points, ROUNDS_AGAIN)
+    return curve, at
+
+
+def nodes_of_points(built: Built) -> Indices:
+    """Return (n,) the node of every point; debris goes to the nearest."""
+    from scipy.spatial import cKDTree
+
+    node = built.curve.owner.copy()
+    node[built.feet.rows] = built.feet.node(built.curve)
+    lost = np.flatnonzero(node < 0)
+    if len(lost):
+        node[lost] = cKDTree(built.curve.nodes).query(built.network.points[lost])[1]
+    return node

@@ -1,0 +1,89 @@
+"""What a user should know about a curve: where it may be wrong, and why."""
+
+import numpy as np
+
+from tiskel import graph
+from tiskel.arrays import Points
+from tiskel.quality.curve import curve_samples
+from tiskel.quality.loops import solid_loops
+from tiskel.quality.surface import Surface, checked
+from tiskel.robust.build import Built
+
+PROBED = 16384  # points; of larger clouds so many are taken to count handles
+PLACES = 200  # on the curve
+OUTSIDE, OUTSIDE_SHARE = 0.25, 0.02  # winding number, share of the places
+UNROUND, UNROUND_SHARE = 0.35, 0.15  # of the local radius that a point is off the cones; share of such points
+SPARSE, SPARSE_SHARE = 1.5, 0.05  # spacings in a radius; share of such nodes
+SHORT = 1.0  # largest radii that a curve is long at least, to be one
+
+
+def doubts(built: Built) -> tuple[str, ...]:
+    """Return the warnings of a curve, each what, how much, and what to do."""
+    return tuple(
+        warning
+        for warning in (_debris(built), _sparse(built), _short(built), _unround(built), _gaps(built), *_body(built))
+        if warning
+    )
+
+
+def _debris(built: Built) -> str:
+    left_out = int((built.curve.owner < 0).sum())
+    return left_out and f"{left_out} points in small separate parts were left out" or ""
+
+
+def _sparse(built: Built) -> str:
+    thin = float((built.curve.radii < SPARSE * built.network.spacing).mean())
+    few = f"{thin:.0%} of the nodes are thinner than {SPARSE} spacings of the points: too few points for the thickness"
+    return few if thin > SPARSE_SHARE else ""
+
+
+def _short(built: Built) -> str:
+    curve = built.curve
+    length = float(graph.edge_lengths(curve.nodes, curve.edges).sum())
+    if len(curve.edges) and length >= SHORT * curve.radii.max():
+        return ""
+    return "the body is hardly longer than it is thick: its curve skeleton says little about it"
+
+
+def _unround(built: Built) -> str:
+    curve, feet = built.curve, built.feet
+    if len(feet.rows) == 0:
+        return ""
+    radius = curve.radii[curve.edges[feet.edge]]
+    local = (1 - feet.share) * radius[:, 0] + feet.share * radius[:, 1]
+    share = float((np.abs(feet.residual) > UNROUND * local).mean())
+    flat = f"{share:.0%} of the points lie far from a round section: there the body is flat and did not become thin"
+    return flat if share > UNROUND_SHARE else ""
+
+
+def _gaps(built: Built) -> str:
+    return f"{built.gaps} gaps in the scan were bridged by straight lines" if built.gaps else ""
+
+
+def _body(built: Built) -> tuple[str, ...]:
+    """Compare the curve with the solid inside the cloud, where there is one."""
+    surface = _checked(built.surface)
+    if not surface.trusted:
+        return ()
+    curve = built.curve
+    handles, loops = solid_loops(surface)[0], graph.loop_count(len(curve.nodes), curve.edges)
+    places = np.concatenate([curve.nodes, _places(built)])
+    outside = float((surface.winding_numbers(places) < OUTSIDE).mean())
+    return (
+        "" if handles is None or handles <= loops else f"the body has {handles} handles, the curve only {loops} loops",
+        "" if handles is None or handles >= loops else f"the curve has {loops} loops, the body only {handles} handles",
+        f"{outside:.0%} of the curve lies outside the body" if outside > OUTSIDE_SHARE else "",
+    )
+
+
+def _checked(surface: Surface) -> Surface:
+    """Return the surface, thinned where it has many points, with the check that it has an inside."""
+    step = -(-len(surface.points) // PROBED)
+    points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
+    thinned = Surface(points, normals, step * surface.areas[::step])
+    return checked(thinned, seed=0)
+
+
+def _places(built: Built) -> Points:
+    curve = built.curve
+    return curve_samples(curve.nodes, curve.edges, PLACES).points if len(curve.edges) else np.zeros((0, 3))
