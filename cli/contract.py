@@ -17,6 +17,7 @@ def contract(
     neighbours: o.Neighbours = o.CONTRACTION.neighbours,
     max_steps: o.MaxSteps = o.CONTRACTION.max_steps,
     normalise: o.Normalise = o.CONTRACTION.normalise,
+    weights: o.Weights = None,
     solver: o.SolverName = None,
     *,
     conditioning: Mapping[str, Any],
@@ -30,7 +31,7 @@ def contract(
     from tiskel import contract as contract_cloud
     from tiskel.io.contraction_file import dump_contraction
 
-    contraction = contract_cloud(points, params)
+    contraction = contract_cloud(points, params, stages.weights_of(cloud, points, weights))
     stages.tell_contraction(contraction)
     target = stages.output_path(output, source, "contraction.ply")
     stages.write(target, lambda: dump_contraction(contraction, cloud.source))

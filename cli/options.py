@@ -116,7 +116,10 @@ Neighbours = Annotated[
 MaxSteps = Annotated[
     int | None,
     typer.Option(
-        metavar="N", help="Step limit. [default: 3 for robust, 10 for gls, 20 for lbc]", show_default=False, rich_help_panel="Method"
+        metavar="N",
+        help="Step limit. [default: 3 for robust, 10 for gls, 20 for lbc]",
+        show_default=False,
+        rich_help_panel="Method",
     ),
 ]
 Normalise = Annotated[
@@ -128,6 +131,15 @@ SolverName = Annotated[
         "--solver",
         metavar="scipy|cholmod",
         help="Sparse solver. [default: TISKEL_SOLVER, else scipy]",
+        show_default=False,
+        rich_help_panel="Method",
+    ),
+]
+Weights = Annotated[
+    str | None,
+    typer.Option(
+        metavar="PROPERTY",
+        help="Property of the PLY whose values W_L is multiplied by, point by point; for gls and lbc.",
         show_default=False,
         rich_help_panel="Method",
     ),

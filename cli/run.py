@@ -39,6 +39,7 @@ def run(
     neighbours: o.Neighbours = o.CONTRACTION.neighbours,
     max_steps: o.MaxSteps = o.CONTRACTION.max_steps,
     normalise: o.Normalise = o.CONTRACTION.normalise,
+    weights: o.Weights = None,
     solver: o.SolverName = None,
     raw: o.Raw = o.SKELETON.raw,
     radius: o.Radius = o.SKELETON.radius,
@@ -56,7 +57,7 @@ def run(
     cloud, points = _timed(seconds, "read", lambda: stages.cloud_points(source, **conditioning))
     from tiskel import assess_stability, contract, evaluate, extract_skeleton
 
-    c = _timed(seconds, "contract", lambda: contract(points, params))
+    c = _timed(seconds, "contract", lambda: contract(points, params, stages.weights_of(cloud, points, weights)))
     stages.tell_contraction(c)
     s = _timed(seconds, "skeleton", lambda: extract_skeleton(c, skeleton_params))
     stages.tell_skeleton(s)

@@ -11,7 +11,7 @@ from tiskel.errors import TiskelError
 from tiskel.params import ContractionParams
 
 if TYPE_CHECKING:
-    from tiskel.arrays import Points
+    from tiskel.arrays import Numbers, Points
     from tiskel.contraction import Contraction
     from tiskel.io.clouds import Cloud
     from tiskel.skeleton import Skeleton
@@ -48,6 +48,18 @@ def cloud_points(
     for line in report:
         console.say(line)
     return cloud, points
+
+
+def weights_of(cloud: "Cloud", points: "Points", name: str | None) -> "Numbers | None":
+    """Return a property of the cloud, one number per point, or nothing where none is named."""
+    if name is None:
+        return None
+    if name not in cloud.properties:
+        known = ", ".join(cloud.properties) or "none"
+        raise TiskelError(f"--weights: {cloud.name} has no property {name!r}; it has {known}")
+    if len(points) != len(cloud.points):
+        raise TiskelError("--weights names a value for every point of the file; leave out what changes their number")
+    return cloud.properties[name]
 
 
 def contraction_params(

@@ -78,7 +78,9 @@ class Contraction:
         return place[into]
 
 
-def contract(points: npt.ArrayLike, params: ContractionParams | None = None) -> Contraction:
+def contract(
+    points: npt.ArrayLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None
+) -> Contraction:
     """Contract a cloud towards its medial curve.
 
     Methods: "robust", by fronts over the original cloud (:mod:`tiskel.robust.fronts`),
@@ -90,7 +92,10 @@ def contract(points: npt.ArrayLike, params: ContractionParams | None = None) -> 
     ----------
     points : (n, 3), in any unit. Rows that are not finite are dropped and exact
         duplicates merged; both are counted in the warnings.
-    params : settings; the defaults are the published ones.
+    params : settings.
+    weights : (n,) positive, for lbc and gls: what W_L is multiplied by at each
+        point. Thick parts contract more slowly; one weight for each semantic part
+        evens that out (S-LBC, Meyer et al. 2023).
 
     Returns
     -------
@@ -100,7 +105,7 @@ def contract(points: npt.ArrayLike, params: ContractionParams | None = None) -> 
     ------
     TiskelError
         Fewer than ten distinct finite points, all points on a plane or a line,
-        or a first step that has no solution.
+        weights that do not fit, or a first step that has no solution.
     """
     params = params or ContractionParams()
     every = as_points(points)
@@ -112,11 +117,21 @@ def contract(points: npt.ArrayLike, params: ContractionParams | None = None) -> 
     distinct = np.flatnonzero(first == np.arange(len(cloud))).astype(np.int32)
     check_solid(cloud[distinct])
     frame = normalisation(cloud[distinct], params.normalise)
-    trace = LOOPS[params.method](frame.apply(cloud[distinct]), params)
+    chosen = None if weights is None else _weights(weights, len(every))[finite][distinct]
+    trace = LOOPS[params.method](frame.apply(cloud[distinct]), params, chosen)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
     warnings = _warnings(len(every) - len(cloud), len(cloud) - len(distinct), trace.status)
     return _assembled(trace, frame, cloud, input_rows, first, distinct, warnings, params)
+
+
+def _weights(weights: npt.ArrayLike, count: int) -> Numbers:
+    values = np.asarray(weights, dtype=np.float64)
+    if values.shape != (count,):
+        raise TiskelError(f"weights must be one number for each of the {count} points, got shape {values.shape}")
+    if not (np.isfinite(values) & (values > 0)).all():
+        raise TiskelError("weights must be positive and finite; 1 leaves a point as it is")
+    return values
 
 
 def _warnings(dropped: int, duplicates: int, status: Status) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tiskel.arrays import Indices, Numbers, Points
-from tiskel.lbc import grew, next_weights
+from tiskel.lbc import grew, next_weights, weighted
 from tiskel.neighbourhood import surroundings
 from tiskel.params import ContractionParams
 from tiskel.reduction import Merge, matching, merge, stage_function
@@ -40,8 +40,8 @@ class _State:
     count_before: int  # points when the score was taken
 
 
-def contract_gls(points: Points, params: ContractionParams) -> Trace:
-    """Contract and reduce until the explained score settles; points normalised."""
+def contract_gls(points: Points, params: ContractionParams, weights: Numbers | None = None) -> Trace:
+    """Contract and reduce until the explained score settles; points normalised, weights (n,) as in lbc."""
     watch = Stopwatch()
     with watch.measure("rings"):
         state = _start(points, params)
@@ -53,7 +53,7 @@ def contract_gls(points: Points, params: ContractionParams) -> Trace:
     for number in range(params.step_limit()):
         step_watch = Stopwatch()
         try:
-            delta, there = _solve(state, params, step_watch)
+            delta, there = _solve(state, params, step_watch, weights)
         except SingularStep:
             status = Status.SINGULAR
             break
@@ -98,12 +98,20 @@ def _start(points: Points, params: ContractionParams) -> _State:
     )  # fmt: skip
 
 
-def _solve(state: _State, params: ContractionParams, watch: Stopwatch) -> tuple[Points, Points]:
+def _solve(
+    state: _State, params: ContractionParams, watch: Stopwatch, weights: Numbers | None
+) -> tuple[Points, Points]:
     """Return the Laplacian coordinates before the solve, and the contracted cloud."""
     with watch.measure("laplacian"):
         laplacian = cotangent_laplacian(state.points, state.rings, params.cotangent_cap)
     with watch.measure("solve"):
-        there = contracted(laplacian, state.contraction, state.attraction, state.points, params.solver)
+        there = contracted(
+            weighted(laplacian, None if weights is None else weights[state.rows]),
+            state.contraction,
+            state.attraction,
+            state.points,
+            params.solver,
+        )
     return np.ascontiguousarray(laplacian @ state.points), there
 
 

@@ -6,8 +6,9 @@ Follows the toolbox where print differs: the ring size is the smallest distance
 """
 
 import numpy as np
+from scipy import sparse
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Indices, Numbers, Points
 from tiskel.neighbourhood import surroundings
 from tiskel.params import ContractionParams
 from tiskel.published_order import in_published_order
@@ -16,8 +17,11 @@ from tiskel.solve import SingularStep, contracted
 from tiskel.trace import Status, StepRecord, Stopwatch, Trace
 
 
-def contract_lbc(points: Points, params: ContractionParams) -> Trace:
-    """Contract until the ratio of summed ring sizes falls by less than the stop ratio; points normalised."""
+def contract_lbc(points: Points, params: ContractionParams, weights: Numbers | None = None) -> Trace:
+    """Contract until the ratio of summed ring sizes falls by less than the stop ratio; points normalised.
+
+    weights (n,) multiply W_L point by point, as in S-LBC (Meyer et al. 2023), where parts of one thickness share one.
+    """
     watch = Stopwatch()
     with watch.measure("rings"):
         rings = published_rings(points, params.neighbours_for(len(points)))
@@ -31,7 +35,7 @@ def contract_lbc(points: Points, params: ContractionParams) -> Trace:
     for _ in range(params.step_limit()):
         step_watch = Stopwatch()
         try:
-            there = one_step(here, rings, contraction, attraction, params, step_watch)
+            there = one_step(here, rings, contraction, attraction, params, step_watch, weights)
         except SingularStep:
             status = Status.SINGULAR
             break
@@ -58,13 +62,24 @@ def published_rings(points: Points, k: int) -> Rings:
 
 
 def one_step(
-    here: Points, rings: Rings, contraction: float, attraction: Points, params: ContractionParams, watch: Stopwatch
+    here: Points,
+    rings: Rings,
+    contraction: float,
+    attraction: Points,
+    params: ContractionParams,
+    watch: Stopwatch,
+    weights: Numbers | None = None,
 ) -> Points:
     """Return the contracted cloud: the Laplacian of the cloud as it is, over its original rings, solved once."""
     with watch.measure("laplacian"):
-        laplacian = cotangent_laplacian(here, rings, params.cotangent_cap)
+        laplacian = weighted(cotangent_laplacian(here, rings, params.cotangent_cap), weights)
     with watch.measure("solve"):
         return contracted(laplacian, contraction, attraction, here, params.solver)
+
+
+def weighted(laplacian: sparse.csr_array, weights: Numbers | None) -> sparse.csr_array:
+    """Return the Laplacian with its rows times the weights (n,): what multiplies W_L of a point."""
+    return laplacian if weights is None else sparse.csr_array(sparse.diags_array(weights) @ laplacian)
 
 
 def grew(points: Points, original: Points, params: ContractionParams) -> bool:

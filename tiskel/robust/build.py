@@ -83,4 +83,4 @@ def nodes_of_points(built: Built) -> Indices:
     lost = np.flatnonzero(node < 0)
     if len(lost):
         node[lost] = cKDTree(built.curve.nodes).query(built.network.points[lost])[1]
-    return node
+    return np.asarray(node)

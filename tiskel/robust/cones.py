@@ -52,7 +52,7 @@ class Feet:
 
     def node(self, curve: ConeCurve) -> Indices:
         """Return (p,) the nearer end of the edge."""
-        return curve.edges[self.edge, (self.share > 0.5).astype(int)]
+        return np.asarray(curve.edges[self.edge, (self.share > 0.5).astype(int)])
 
 
 def fit_cones(curve: ConeCurve, points: Points, rounds: int) -> tuple[ConeCurve, Feet]:
@@ -61,8 +61,8 @@ def fit_cones(curve: ConeCurve, points: Points, rounds: int) -> tuple[ConeCurve,
         none = np.zeros(0)
         return curve, Feet(none.astype(np.int32), none.astype(np.int32), none, none)
     nearby = nearby_edges(curve)
-    rows = np.flatnonzero(curve.owner >= 0)
-    rows = rows[(nearby[curve.owner[rows]] >= 0).any(axis=1)].astype(np.int32)
+    owned = np.flatnonzero(curve.owner >= 0)
+    rows: Indices = owned[(nearby[curve.owner[owned]] >= 0).any(axis=1)].astype(np.int32)
     candidates, start = nearby[curve.owner[rows]], curve.nodes
     thinnest = THINNEST * np.median(curve.radii)
     curve = replace(curve, radii=np.maximum(curve.radii, thinnest))

@@ -78,7 +78,7 @@ def contract_nodes(curve: ConeCurve, into: Indices, *, mean: bool = False) -> Co
         radii = np.zeros(len(kept))
         np.maximum.at(radii, name, curve.radii)
     return ConeCurve(
-        nodes, radii, tidy_edges(name[curve.edges]), curve.levels[kept],
+        nodes, radii, tidy_edges(name[curve.edges].astype(np.int32)), curve.levels[kept],
         np.where(curve.owner < 0, -1, name[curve.owner]).astype(np.int32),
     )  # fmt: skip
 

@@ -45,7 +45,7 @@ def without_filled_cycles(curve: ConeCurve, network: Network, surface: Surface, 
 
 
 def short_cycles(curve: ConeCurve) -> list[list[int]]:
-    """Return the shortest cycles through each node and two neighbours of it on one side of the front, shortest first."""
+    """Return the shortest cycles through each node and two neighbours on one side of the front, shortest first."""
     around, levels = curve.around(), curve.levels.tolist()
     found: dict[tuple[int, ...], list[int]] = {}
     for node, others in enumerate(around):
@@ -113,9 +113,7 @@ def _overlapping(rungs: Indices, curve: ConeCurve) -> Mask:
     return np.asarray(length < curve.radii[rungs].max(axis=1))
 
 
-def _contraction(
-    cycles: list[list[int]], filled: Mask, rungs: Indices, owner: Indices, levels: Indices
-) -> Indices:
+def _contraction(cycles: list[list[int]], filled: Mask, rungs: Indices, owner: Indices, levels: Indices) -> Indices:
     """Return for each node the one that takes its place: both sides of filled cycles that do not touch become one.
 
     Level by level; all at once only where the sides have no level in common.
@@ -127,8 +125,7 @@ def _contraction(
         taken[cycles[number]] = True
         pairs = rungs[owner == number]
         level = levels[pairs[:, 0]] == levels[pairs[:, 1]]
-        for a, b in into[pairs[level] if level.any() else pairs]:
-            a, b = into[a], into[b]
-            into[into == max(a, b)] = min(a, b)
+        for pair in pairs[level] if level.any() else pairs:
+            low, high = np.sort(into[pair])
+            into[into == high] = low
     return into
-

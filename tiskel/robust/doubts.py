@@ -28,7 +28,7 @@ def doubts(built: Built) -> tuple[str, ...]:
 
 def _debris(built: Built) -> str:
     left_out = int((built.curve.owner < 0).sum())
-    return left_out and f"{left_out} points in small separate parts were left out" or ""
+    return f"{left_out} points in small separate parts were left out" if left_out else ""
 
 
 def _sparse(built: Built) -> str:

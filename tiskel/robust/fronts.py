@@ -19,6 +19,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from tiskel.arrays import Indices, Numbers, Points
+from tiskel.errors import TiskelError
 from tiskel.params import ContractionParams
 from tiskel.rings import smallest_distances
 from tiskel.robust.network import Network, neighbour_network
@@ -46,8 +47,13 @@ class Sections:
         return int(self.section.max(initial=-1)) + 1
 
 
-def contract_robust(points: Points, params: ContractionParams) -> Trace:
-    """Contract by fronts, one step each; points normalised."""
+def contract_robust(points: Points, params: ContractionParams, weights: Numbers | None = None) -> Trace:
+    """Contract by fronts, one step each; points normalised.
+
+    Raises TiskelError for weights: every part goes to its axis at once, whatever its thickness.
+    """
+    if weights is not None:
+        raise TiskelError("method robust takes no weights; leave them out, or choose method lbc or gls")
     watch = Stopwatch()
     with watch.measure("rings"):
         network = neighbour_network(points, params.neighbours_for(len(points)))
@@ -106,7 +112,7 @@ def front(network: Network, there: Points, strides: Numbers, part: Indices, aver
         distance[rows] = dijkstra(graph, directed=False, indices=start)[rows]
     for _ in range(SMOOTHED):
         distance = averaging @ distance
-    return distance
+    return np.asarray(distance)
 
 
 def cut(network: Network, distance: Numbers) -> Sections:
@@ -158,7 +164,7 @@ def on_axes(network: Network, sections: Sections) -> Points:
     share = _roundness(np.linalg.norm(points - moved, axis=1), label, size)[label][:, None]
     there = network.points.copy()
     there[rows] = share * moved + (1 - share) * points
-    return there
+    return np.asarray(there)
 
 
 def _roundness(distance: Numbers, label: Indices, size: Numbers) -> Numbers:
@@ -180,9 +186,9 @@ def _strides(network: Network, there: Points, averaging: sparse.csr_array) -> Nu
     radius = np.linalg.norm(network.points - there, axis=1)
     for _ in range(EVENED):
         radius = averaging @ radius
-    return np.maximum(STRIDE_RADII * radius, STRIDE * np.maximum(network.spacings, network.spacing))
+    return np.asarray(np.maximum(STRIDE_RADII * radius, STRIDE * np.maximum(network.spacings, network.spacing)))
 
 
 def _sums(values: Numbers, label: Indices, count: int) -> Numbers:
     """Return (count, d) the sums of values (n, d) by label."""
-    return np.stack([np.bincount(label, column, minlength=count) for column in values.T], axis=1)
+    return np.asarray(np.stack([np.bincount(label, column, minlength=count) for column in values.T], axis=1))

@@ -47,14 +47,14 @@ def _clusters(network: Network, rows: Indices) -> list[Indices]:
     links = links[(links >= 0).all(axis=1)]
     graph = sparse.coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(len(rows), len(rows)))
     count, label = connected_components(graph, directed=False)
-    return [np.flatnonzero(label == number) for number in range(count)]
+    return [np.flatnonzero(label == number).astype(np.int32) for number in range(count)]
 
 
 def _with_limb(curve: ConeCurve, network: Network, rows: Indices, height: Numbers, foot: Indices) -> ConeCurve:
     """Add a chain of nodes, one for every stride of height, at the node that most of the lowest points stand on."""
     stride = max(STRIDE * network.spacing, float(np.ptp(height)) / len(rows))
     layer = np.floor((height - height.min()) / stride).astype(np.int32)
-    layer = np.unique(layer, return_inverse=True)[1].ravel()
+    layer = np.unique(layer, return_inverse=True)[1].ravel().astype(np.int32)
     count, first = int(layer.max()) + 1, len(curve.nodes)
     nodes, size = line_centres(network.points[rows], network.normals[rows], layer, count)
     distance = np.linalg.norm(network.points[rows] - nodes[layer], axis=1)

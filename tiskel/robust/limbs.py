@@ -28,10 +28,10 @@ def without_stubs(curve: ConeCurve, points: Points) -> ConeCurve:
                 others = [curve.radii[node] for node in curve.around()[joint] if node != path[-2]]
                 radius = min(curve.radii[joint], float(np.mean(others)))
                 stubs.append((float(np.linalg.norm(points[rows] - curve.nodes[joint], axis=1).max()) / radius, path))
-        reach, path = min(stubs, key=lambda stub: (stub[0], int(stub[1][0])), default=(np.inf, None))
-        if path is None or reach >= BARELY:
+        shortest = min(stubs, key=lambda stub: (stub[0], int(stub[1][0])), default=None)
+        if shortest is None or shortest[0] >= BARELY:
             return curve
-        curve = _without(curve, path)
+        curve = _without(curve, shortest[1])
 
 
 def without_contained_ends(curve: ConeCurve) -> ConeCurve:
@@ -43,7 +43,9 @@ def without_contained_ends(curve: ConeCurve) -> ConeCurve:
     into = np.arange(len(curve.nodes), dtype=np.int32)
     for path in curve.paths_from(ends=True):
         for last in range(len(path) - 2, 0, -1):
-            reach = np.linalg.norm(curve.nodes[path[:last]] - curve.nodes[path[last]], axis=1) + curve.radii[path[:last]]
+            reach = (
+                np.linalg.norm(curve.nodes[path[:last]] - curve.nodes[path[last]], axis=1) + curve.radii[path[:last]]
+            )
             if (reach <= CONTAINED * curve.radii[path[last]]).all():
                 into[path[:last]] = path[last]
                 break
@@ -58,8 +60,8 @@ def without_explained_limb(curve: ConeCurve, points: Points, spacing: float) -> 
             radius = min(float(curve.radii[path[:-1]].max()), float(curve.radii[path[-1]]))
             asked = max(STICKS_OUT * radius, STICKS_OUT_SPACINGS * spacing)
             limbs.append((_protrusion(curve, points, path) / asked, path))
-    share, path = min(limbs, key=lambda limb: (limb[0], int(limb[1][0])), default=(np.inf, None))
-    return None if path is None or share >= 1 else _without(curve, path)
+    least = min(limbs, key=lambda limb: (limb[0], int(limb[1][0])), default=None)
+    return None if least is None or least[0] >= 1 else _without(curve, least[1])
 
 
 def _protrusion(curve: ConeCurve, points: Points, path: Indices) -> float:
