@@ -21,6 +21,7 @@ from scipy.sparse.linalg import spsolve
 from tiskel import ContractionParams, ShapeParams, contract, load_cloud, make_shape, shape_graph
 from tiskel.arrays import Points, normalisation
 from tiskel.neighbourhood import cloud_rings, nearest_neighbours
+from tiskel.params import published_neighbours
 from tiskel.rings import cotangent_laplacian, mean_ring_length
 
 ROUNDS = 5
@@ -41,7 +42,7 @@ def seconds(work: Callable[[], object]) -> float:
 
 def first_normal_matrix(points: Points) -> tuple[sparse.csc_array, Points]:
     cloud = normalisation(points).apply(points)
-    rings = cloud_rings(cloud, ContractionParams().neighbours_for(len(cloud)))
+    rings = cloud_rings(cloud, published_neighbours(len(cloud)))
     laplacian = cotangent_laplacian(cloud, rings, ContractionParams().cotangent_cap)
     weight = 1 / (5 * mean_ring_length(cloud, rings, count_first_twice=False))
     return sparse.csc_array(weight**2 * (laplacian.T @ laplacian) + sparse.eye_array(len(cloud))), cloud

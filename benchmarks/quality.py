@@ -98,13 +98,18 @@ def clouds(setting: str) -> Iterator[tuple[str, np.ndarray]]:
             yield path.stem, load_cloud(path).points
         return
     generator = np.random.default_rng(0)
-    cube = generator.uniform(-1, 1, (4096, 3))
-    side = generator.integers(0, 3, len(cube))
-    cube[np.arange(len(cube)), side] = np.sign(cube[np.arange(len(cube)), side])
     ball = generator.normal(size=(4096, 3))
-    yield "plate", cube * [1.0, 0.7, 0.05]
-    yield "box", cube * [1.0, 0.8, 0.6]
+    yield "plate", block(np.array([1.0, 0.7, 0.05]), generator)
+    yield "box", block(np.array([1.0, 0.8, 0.6]), generator)
     yield "ball", ball / np.linalg.norm(ball, axis=1)[:, None]
+
+
+def block(half: np.ndarray, generator: np.random.Generator) -> np.ndarray:
+    """Return 4096 points on a block of these half sides, even by area."""
+    points = generator.uniform(-1, 1, (4096, 3))
+    side = generator.choice(3, len(points), p=(1 / half) / (1 / half).sum())
+    points[np.arange(len(points)), side] = np.sign(points[np.arange(len(points)), side])
+    return points * half
 
 
 def scored(name: str, cloud: np.ndarray, shape: ConeGraph | None, setting: str, method: str) -> Row:
@@ -141,7 +146,9 @@ def rows_of(setting: str) -> list[Row]:
 def in_process(setting: str) -> list[Row]:
     """Score a setting in a process of its own."""
     words = [sys.executable, __file__, "--rows", setting]
-    done = subprocess.run(words, env={**os.environ, "TISKEL_NUM_THREADS": "1"}, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        words, env={**os.environ, "TISKEL_NUM_THREADS": "1"}, capture_output=True, text=True, check=False
+    )
     if done.returncode:
         sys.exit(f"{setting}: {done.stderr}")
     print(setting, flush=True)
@@ -212,7 +219,7 @@ def page(rows: list[Row], settings: list[str]) -> str:
 
 
 def missed(rows: list[Row], setting: str, method: str) -> str:
-    chosen = [row for row in rows if (row["setting"], row["method"], row["right"] if "right" in row else 1)
+    chosen = [row for row in rows if (row["setting"], row["method"], row.get("right", 1))
               == (setting, method, 0)]  # fmt: skip
     return ", ".join(
         f"{r['shape']} (components {r['components']:+d}, loops {r['loops']:+d})" if "loops" in r else r["shape"]

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from plyfile import PlyData, PlyElement
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import load_cloud, read_contraction, read_skeleton
@@ -131,7 +132,7 @@ def test_info_of_stage_files(tiskel: Runner, cloud: Path) -> None:
     contraction, skeleton = (
         json.loads(tiskel("info", f"out/{stage}.ply").stdout) for stage in ("contraction", "skeleton")
     )
-    assert contraction["contraction"]["method"] == "gls"
+    assert contraction["contraction"]["method"] == "robust"
     assert skeleton["skeleton"]["components"] >= 1
     assert skeleton["cloud"]["points"] == 900
 
@@ -192,7 +193,9 @@ def test_missing_files_folders_and_wrong_stages(tiskel: Runner, cloud: Path, tmp
 
 
 def test_wrong_values_and_wrong_usage(tiskel: Runner, cloud: Path) -> None:
-    assert "method must be one of gls, lbc" in one_error_line(tiskel("contract", cloud.name, "--method", "magic"))
+    assert "method must be one of robust, gls, lbc" in one_error_line(
+        tiskel("contract", cloud.name, "--method", "magic")
+    )
     assert "--crop needs 6 numbers" in one_error_line(tiskel("contract", cloud.name, "--crop", "1,2"))
     assert "no shape is called 'unicorn'" in one_error_line(tiskel("shape", "unicorn"))
     assert "TISKEL_NUM_THREADS must be" in tiskel("contract", cloud.name, TISKEL_NUM_THREADS="many").stderr.decode()
@@ -222,3 +225,37 @@ def test_log_and_version_and_help(tiskel: Runner, cloud: Path, tmp_path: Path) -
 
 def test_verbose_shows_the_traceback(tiskel: Runner) -> None:
     assert b"Traceback" in tiskel("contract", "nowhere.ply", "--verbose").stderr
+
+
+def test_robust_is_the_same_on_one_thread_and_two_and_says_its_doubts(
+    tiskel: Runner, cloud: Path, tmp_path: Path
+) -> None:
+    made = []
+    for threads in (1, 2):
+        contraction = tiskel("contract", cloud.name, "--threads", threads)
+        skeleton = tiskel("skeleton", "-", "--threads", threads, data=contraction.stdout)
+        made.append((contraction.stdout, skeleton.stdout))
+    assert made[0] == made[1]
+    assert b"components 1, loops 0, ends 3" in skeleton.stderr
+    points = load_cloud(cloud).points
+    stray = np.random.default_rng(0).normal(size=(7, 3)) * 0.01 + [5, 0, 0]
+    np.save(tmp_path / "stray.npy", np.concatenate([points, stray]))
+    tiskel("contract", "stray.npy", "-o", "c.ply")
+    said = tiskel("skeleton", "c.ply", "-o", "s.ply").stderr
+    assert b"7 points in small separate parts were left out" in said
+    assert tiskel("skeleton", "c.ply", "-o", "t.ply", "--strict").returncode == 1
+
+
+def test_weights_name_a_property_of_the_cloud(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    points = load_cloud(cloud).points
+    columns = [(axis, "f8") for axis in "xyz"] + [("heavy", "f4")]
+    table = np.array([(*p, 1 + 9 * (p[2] > 0)) for p in points], dtype=columns)
+    PlyData([PlyElement.describe(table, "vertex")]).write(tmp_path / "w.ply")
+    words = ("contract", "w.ply", "--method", "lbc", "--max-steps", 1)
+    plain, weighted = (tiskel(*words, *more).stdout for more in ((), ("--weights", "heavy")))
+    assert plain.startswith(b"ply")
+    assert weighted.startswith(b"ply")
+    assert plain != weighted
+    assert "has no property 'lead'; it has heavy" in one_error_line(tiskel(*words, "--weights", "lead"))
+    assert "a value for every point" in one_error_line(tiskel(*words, "--weights", "heavy", "--sample", 300))
+    assert "robust takes no weights" in one_error_line(tiskel("contract", "w.ply", "--weights", "heavy"))

@@ -10,7 +10,7 @@ from reference.fixtures import Load
 from tiskel.arrays import normalisation
 from tiskel.lbc import published_rings
 from tiskel.neighbourhood import cloud_rings, one_rings
-from tiskel.params import ContractionParams
+from tiskel.params import published_neighbours
 
 FLAT = np.array([[[1.0, 0, 0], [0, 1.0, 0]]])
 
@@ -77,7 +77,7 @@ def test_lattice_rings_leave_out_what_triangulations_disagree_on() -> None:
 def test_rings_are_those_of_the_toolbox(name: str, reference_cloud: Load, toolbox: Load) -> None:
     """Required are 99.9 %; found are all, so any difference is a regression."""
     points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
-    rings = cloud_rings(points, ContractionParams().neighbours_for(len(points)))
+    rings = cloud_rings(points, published_neighbours(len(points)))
     published = plain.published(toolbox(f"{name}_lbc")["rings"])
     ours = [(rings.of(i).tolist(), bool(rings.closed[i])) for i in range(len(points))]
     assert sum(not plain.same(a, b) for a, b in zip(ours, published, strict=True)) == 0
@@ -86,7 +86,7 @@ def test_rings_are_those_of_the_toolbox(name: str, reference_cloud: Load, toolbo
 @pytest.mark.parametrize("name", ["hammer", "horse", "joint"])
 def test_published_order_starts_and_turns_rings_as_the_toolbox(name: str, reference_cloud: Load, toolbox: Load) -> None:
     points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
-    rings = published_rings(points, ContractionParams().neighbours_for(len(points)))
+    rings = published_rings(points, published_neighbours(len(points)))
     theirs = plain.published(toolbox(f"{name}_lbc")["rings"])
     same = sum(rings.of(i).tolist() == ring for i, (ring, _) in enumerate(theirs))
     assert same > 0.99 * len(points)

@@ -20,7 +20,9 @@ from tiskel.arrays import normalisation
 from tiskel.gls import contract_gls
 from tiskel.lbc import published_rings
 from tiskel.neighbourhood import cloud_rings, nearest_neighbours, principal_axes
+from tiskel.params import published_neighbours
 
+GLS = ContractionParams(method="gls")
 CLOUDS = ["hammer", "horse", "joint", "cave", "fertility"]
 LBC_MEDIAN = {"hammer": 1e-5, "horse": 1e-4, "joint": 1e-4, "cave": 1e-4, "fertility": 1e-4}
 
@@ -41,11 +43,11 @@ def test_lbc_is_the_toolbox(name: str, reference_cloud: Load, toolbox: Load) -> 
 @pytest.mark.parametrize("name", CLOUDS)
 def test_gls_equals_the_plain_implementation_of_the_paper_exactly(name: str, reference_cloud: Load) -> None:
     points = normalisation(reference_cloud(name)).apply(reference_cloud(name))
-    k = ContractionParams().neighbours_for(len(points))
+    k = published_neighbours(len(points))
     rings = cloud_rings(points, k)
     normals = principal_axes(points, nearest_neighbours(points, k)[0])[1][:, 2]
     lists = [(rings.of(i).tolist(), bool(rings.closed[i])) for i in range(len(points))]
-    theirs, ours = plain.contract_paper(points, lists, normals), contract_gls(points, ContractionParams())
+    theirs, ours = plain.contract_paper(points, lists, normals), contract_gls(points, GLS)
     assert [step.points for step in ours.steps] == theirs.counts
     assert ours.status.value == theirs.status
     np.testing.assert_array_equal(ours.rows, theirs.rows)
@@ -73,7 +75,7 @@ def test_the_departures_of_the_toolbox_are_understood(name: str, reference_cloud
     if "rings" in lbc:
         rings = published(lbc["rings"])
     else:
-        ours = published_rings(points, ContractionParams().neighbours_for(len(points)))
+        ours = published_rings(points, published_neighbours(len(points)))
         rings = [(ours.of(i).tolist(), bool(ours.closed[i])) for i in range(len(points))]
     weight = float(lbc["initial_contraction_weight"])
     counts = plain.contract_as_toolbox(points, rings, weight, steps=int(theirs["iterations"]))
@@ -111,7 +113,7 @@ def test_a_capsule_contracts_to_its_axis() -> None:
         assert np.median(away) < 0.02, method
 
 
-@pytest.mark.parametrize("method", ["gls", "lbc"])
+@pytest.mark.parametrize("method", ["robust", "gls", "lbc"])
 def test_scale_and_place_of_the_input_do_not_matter(method: str, capsule: np.ndarray) -> None:
     """A shift by a power of two times the scale is exact in binary, so the normalised clouds agree to rounding."""
     params = ContractionParams(method=method, max_steps=1)  # type: ignore[arg-type]
@@ -120,15 +122,17 @@ def test_scale_and_place_of_the_input_do_not_matter(method: str, capsule: np.nda
     np.testing.assert_allclose((there.points - 4096) / 1000, here.points, atol=1e-5)
 
 
-def test_broken_rows_and_duplicates_are_dropped_counted_and_said(capsule: np.ndarray) -> None:
+@pytest.mark.parametrize("method", ["robust", "gls", "lbc"])
+def test_broken_rows_and_duplicates_are_dropped_counted_and_said(method: str, capsule: np.ndarray) -> None:
+    params = ContractionParams(method=method)  # type: ignore[arg-type]
     dirty = np.concatenate([[[np.nan, 0, 0]], capsule, capsule[:7], [[0, np.inf, 0]]])
-    c = contract(dirty)
+    c = contract(dirty, params)
     assert c.warnings[:2] == ("2 rows with NaN or Inf were dropped", "7 exact duplicates were merged")
     np.testing.assert_array_equal(c.input_rows, np.arange(1, len(dirty) - 1))
     copies = len(capsule) + np.arange(7)
     np.testing.assert_array_equal(c.merged_into[copies], np.arange(7))
     np.testing.assert_array_equal(c.merged_step[copies], 0)
-    np.testing.assert_array_equal(c.points, contract(capsule).points)
+    np.testing.assert_array_equal(c.points, contract(capsule, params).points)
 
 
 @pytest.mark.parametrize(
@@ -185,7 +189,7 @@ def test_cholmod_agrees_with_superlu(capsule: np.ndarray) -> None:
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({"method": "magic"}, "method must be one of gls, lbc"),
+        ({"method": "magic"}, "method must be one of robust, gls, lbc"),
         ({"neighbours": 2}, "at least 4"),
         ({"max_steps": 0}, "at least 1"),
     ],

@@ -13,6 +13,7 @@ from plyfile import PlyData, PlyElement
 
 from tiskel import (
     Contraction,
+    ContractionParams,
     Skeleton,
     SkeletonParams,
     TiskelError,
@@ -33,9 +34,9 @@ from tiskel.io.point_files import SUFFIXES, dump_cloud
 from tiskel.io.skeleton_file import dump_skeleton
 
 
-@pytest.fixture(scope="module")
-def contraction(capsule: np.ndarray) -> Contraction:
-    return contract(np.concatenate([capsule, capsule[:3]]))
+@pytest.fixture(scope="module", params=["robust", "gls"])
+def contraction(capsule: np.ndarray, request: pytest.FixtureRequest) -> Contraction:
+    return contract(np.concatenate([capsule, capsule[:3]]), ContractionParams(method=request.param))
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +53,9 @@ def test_a_contraction_comes_back_whole(contraction: Contraction, tmp_path: Path
     assert [back.rings.of(i).tolist() for i in range(len(back.rings))] == [
         contraction.rings.of(i).tolist() for i in range(len(back.rings))
     ]
+    for name in ("sections", "levels"):  # None of gls
+        np.testing.assert_array_equal(getattr(back, name), getattr(contraction, name), err_msg=name)
+    assert (back.sections is None) == (contraction.params.method == "gls")
     assert back.steps == contraction.steps
     assert (back.status, back.params, back.warnings) == (contraction.status, contraction.params, contraction.warnings)
     assert dump_contraction(back, {"name": "in.ply", "sha256": "0"}) == (tmp_path / "c.ply").read_bytes()

@@ -51,6 +51,7 @@ def build(points: Points, contracted: Points, section: Indices, level: Indices, 
     if grown is not None:
         curve, at = fit_cones(placed_joints(without_contained_ends(grown), surface), points, ROUNDS)
     curve, at = _cleaned(curve, at, network, surface)
+    curve, at = fit_cones(placed_joints(curve, surface), points, ROUNDS_AGAIN)  # now that the limbs are known
     for _ in range(TIPS):
         grown = with_tips(curve, points, at, network.spacing)
         if grown is None:

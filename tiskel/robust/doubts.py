@@ -12,7 +12,7 @@ from tiskel.robust.build import Built
 PROBED = 16384  # points; of larger clouds so many are taken to count handles
 PLACES = 200  # on the curve
 OUTSIDE, OUTSIDE_SHARE = 0.25, 0.02  # winding number, share of the places
-UNROUND, UNROUND_SHARE = 0.35, 0.15  # of the local radius that a point is off the cones; share of such points
+FLAT, FLAT_SHARE = 0.15, 0.2  # ratio of how much normals spread both ways across the curve; share of such points
 SPARSE, SPARSE_SHARE = 1.5, 0.05  # spacings in a radius; share of such nodes
 SHORT = 1.0  # largest radii that a curve is long at least, to be one
 
@@ -21,7 +21,7 @@ def doubts(built: Built) -> tuple[str, ...]:
     """Return the warnings of a curve, each what, how much, and what to do."""
     return tuple(
         warning
-        for warning in (_debris(built), _sparse(built), _short(built), _unround(built), _gaps(built), *_body(built))
+        for warning in (_debris(built), _sparse(built), _short(built), _flat(built), _gaps(built), *_body(built))
         if warning
     )
 
@@ -45,15 +45,18 @@ def _short(built: Built) -> str:
     return "the body is hardly longer than it is thick: its curve skeleton says little about it"
 
 
-def _unround(built: Built) -> str:
-    curve, feet = built.curve, built.feet
-    if len(feet.rows) == 0:
-        return ""
-    radius = curve.radii[curve.edges[feet.edge]]
-    local = (1 - feet.share) * radius[:, 0] + feet.share * radius[:, 1]
-    share = float((np.abs(feet.residual) > UNROUND * local).mean())
-    flat = f"{share:.0%} of the points lie far from a round section: there the body is flat and did not become thin"
-    return flat if share > UNROUND_SHARE else ""
+def _flat(built: Built) -> str:
+    """Find the nodes whose points' normals hardly turn about the curve, as those of a plate do not."""
+    node, normals = built.feet.node(built.curve), built.network.normals[built.feet.rows]
+    scatter = np.zeros((len(built.curve.nodes), 3, 3))
+    np.add.at(scatter, node, normals[:, :, None] * normals[:, None, :])
+    _, across, most = np.linalg.eigvalsh(scatter).T
+    flat = (across < FLAT * most)[node]
+    share = float(flat.mean()) if len(flat) else 0.0
+    told = (
+        f"{share:.0%} of the points lie where the body is flat: it has no curve skeleton there and did not become thin"
+    )
+    return told if share > FLAT_SHARE else ""
 
 
 def _gaps(built: Built) -> str:

@@ -13,6 +13,7 @@ from tiskel.rings import Rings
 NORMAL_NEIGHBOURS = 12  # the point included; the plane through them
 AREA_NEIGHBOURS = 8  # in a disc about the point
 SPACING_NEIGHBOURS = 4  # as many lie within 1.13 spacings on an even surface
+FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour
 ALONG_NORMALS = 0.75  # cosine: such a step leaves the surface at both of its ends
 
 
@@ -67,19 +68,20 @@ class Network:
 def neighbour_network(points: Points, k: int) -> Network:
     """Return the network of a cloud (n, 3) from its k nearest neighbours.
 
-    Steps that run along the normals at both ends would join the sides of a
-    narrow gap, and are left out.
+    Left out are steps that run along the normals at both ends, which would join
+    the sides of a narrow gap, and steps to points that stand apart.
     """
     neighbours, squares = nearest_neighbours(points, min(k, len(points)))
     normals = principal_axes(points, np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS]))[1][:, 2]
     steps, lengths = points[neighbours] - points[:, None], np.sqrt(squares)
     here = np.abs(np.einsum("nkc,nc->nk", steps, normals))
     there = np.abs(np.einsum("nkc,nkc->nk", steps, normals[neighbours]))
-    kept = np.minimum(here, there) < ALONG_NORMALS * lengths
-    kept[:, 0] = False
-    edges, edge_lengths = _edges(neighbours, kept, lengths)
     disc = min(AREA_NEIGHBOURS, neighbours.shape[1] - 1)
     spacings = lengths[:, min(SPACING_NEIGHBOURS, disc)] / np.sqrt(SPACING_NEIGHBOURS / np.pi)
+    kept = np.minimum(here, there) < ALONG_NORMALS * lengths
+    kept &= lengths <= FARTHEST * np.minimum(spacings[:, None], spacings[neighbours])
+    kept[:, 0] = False
+    edges, edge_lengths = _edges(neighbours, kept, lengths)
     return Network(
         points, normals, np.pi * squares[:, disc] / disc, spacings, neighbours, kept, edges, edge_lengths
     )  # fmt: skip
