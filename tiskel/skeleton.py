@@ -16,6 +16,7 @@ from tiskel.errors import TiskelError
 from tiskel.params import SkeletonParams
 from tiskel.robust.build import build, nodes_of_points
 from tiskel.robust.doubts import doubts
+from tiskel.robust.network import own_axes
 from tiskel.sampling import front_samples
 
 
@@ -126,9 +127,11 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
 def _fitted_skeleton(c: Contraction, sections: Indices, levels: Indices) -> Skeleton:
     frame = normalisation(c.origin)
     origin, k = frame.apply(c.origin), c.params.neighbours_for(len(c.rows))
-    built = build(origin, frame.apply(c.points), sections, levels, k)
-    nodes, contracted = frame.undo(built.curve.nodes), c.points.copy()
-    contracted[built.feet.rows] = frame.undo(built.feet.places(built.curve))
+    axes = own_axes(origin)
+    turned, there = (np.ascontiguousarray(points @ axes.T) for points in (origin, frame.apply(c.points)))
+    built = build(turned, there, sections, levels, k)
+    nodes, contracted = frame.undo(built.curve.nodes @ axes), c.points.copy()
+    contracted[built.feet.rows] = frame.undo(built.feet.places(built.curve) @ axes)
     return Skeleton(
         nodes=nodes,
         edges=built.curve.edges,

@@ -113,7 +113,7 @@ def test_a_capsule_contracts_to_its_axis() -> None:
         assert np.median(away) < 0.02, method
 
 
-@pytest.mark.parametrize("method", ["robust", "gls", "lbc"])
+@pytest.mark.parametrize("method", ["gls", "lbc"])
 def test_scale_and_place_of_the_input_do_not_matter(method: str, capsule: np.ndarray) -> None:
     """A shift by a power of two times the scale is exact in binary, so the normalised clouds agree to rounding."""
     params = ContractionParams(method=method, max_steps=1)  # type: ignore[arg-type]

@@ -4,12 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tiskel import graph
 from tiskel.arrays import Indices, Points
+from tiskel.quality.curve import curve_samples
 from tiskel.quality.surface import Surface
+from tiskel.robust.body import Body, body_of
 from tiskel.robust.bridges import bridged
 from tiskel.robust.cones import Feet, fit_cones
 from tiskel.robust.curve import ConeCurve
 from tiskel.robust.cycles import without_filled_cycles
+from tiskel.robust.fronts import front_from_aside
 from tiskel.robust.growth import with_missed_limbs
 from tiskel.robust.joints import merged_joints, placed_joints
 from tiskel.robust.limbs import with_tips, without_contained_ends, without_explained_limb, without_stubs
@@ -17,6 +21,9 @@ from tiskel.robust.network import Network, neighbour_network
 from tiskel.robust.sections import section_curve
 
 ROUNDS, ROUNDS_AGAIN = 4, 2  # of the fit, and after a change to the graph
+DOUBTFUL = 0.02  # of the curve outside or of the points far off: another front is tried, and the better curve kept
+CLEARLY = 0.6  # of the doubt that the other front may leave, to be taken
+PLACES, OUTSIDE, FAR = 200, 0.4, 0.35  # on the curve; winding number; local radii
 TIPS = 3  # nodes that an end may grow by
 
 
@@ -28,20 +35,52 @@ class Built:
     ----------
     curve : the curve; feet : where the points stand on it.
     network : the neighbour graph; surface : the oriented cloud.
-    gaps : how many were bridged.
+    body : the solid inside; gaps : how many were bridged.
     """
 
     curve: ConeCurve
     feet: Feet
     network: Network
     surface: Surface
+    body: Body
     gaps: int
+
+    @property
+    def loops(self) -> int:
+        return graph.loop_count(len(self.curve.nodes), self.curve.edges)
 
 
 def build(points: Points, contracted: Points, section: Indices, level: Indices, k: int) -> Built:
     """Return the curve of a cloud (n, 3) whose points contract to (n, 3), with their sections and levels (n,)."""
     network = neighbour_network(points, k)
     surface = network.oriented(contracted)
+    body = body_of(surface)
+    first = _built(network, surface, body, section, level)
+    if doubt(first) < DOUBTFUL:
+        return first
+    again = front_from_aside(network, contracted)
+    second = _built(network, surface, body, again.section, again.level)
+    return second if doubt(second) < CLEARLY * doubt(first) else first
+
+
+def doubt(built: Built) -> float:
+    """Return the share of places on the curve outside the body and of points far from its cones.
+
+    And one for every loop more or less than the body has handles.
+    """
+    curve, feet = built.curve, built.feet
+    off = 0 if built.body.handles is None else abs(built.loops - built.body.handles)
+    if len(curve.edges) == 0:
+        return float(off)
+    places = np.concatenate([curve.nodes, curve_samples(curve.nodes, curve.edges, PLACES).points])
+    radius = curve.radii[curve.edges[feet.edge]]
+    local = (1 - feet.share) * radius[:, 0] + feet.share * radius[:, 1]
+    outside = float((built.surface.winding_numbers(places) < OUTSIDE).mean())
+    return off + outside + float((np.abs(feet.residual) > FAR * local).mean())
+
+
+def _built(network: Network, surface: Surface, body: Body, section: Indices, level: Indices) -> Built:
+    points = network.points
     curve = section_curve(network, section, level)
     curve = without_filled_cycles(curve, network, surface, fitted=False)
     curve = merged_joints(without_stubs(curve, points))
@@ -59,7 +98,7 @@ def build(points: Points, contracted: Points, section: Indices, level: Indices, 
         curve, at = fit_cones(grown, points, ROUNDS_AGAIN + 1)
     curve, gaps = bridged(curve, network)
     _, at = fit_cones(curve, points, 0)
-    return Built(curve, at, network, surface, gaps)
+    return Built(curve, at, network, surface, body, gaps)
 
 
 def _cleaned(curve: ConeCurve, at: Feet, network: Network, surface: Surface) -> tuple[ConeCurve, Feet]:

@@ -5,11 +5,8 @@ import numpy as np
 from tiskel import graph
 from tiskel.arrays import Points
 from tiskel.quality.curve import curve_samples
-from tiskel.quality.loops import solid_loops
-from tiskel.quality.surface import Surface, checked
 from tiskel.robust.build import Built
 
-PROBED = 16384  # points; of larger clouds so many are taken to count handles
 PLACES = 200  # on the curve
 OUTSIDE, OUTSIDE_SHARE = 0.25, 0.02  # winding number, share of the places
 FLAT, FLAT_SHARE = 0.15, 0.2  # ratio of how much normals spread both ways across the curve; share of such points
@@ -65,26 +62,16 @@ def _gaps(built: Built) -> str:
 
 def _body(built: Built) -> tuple[str, ...]:
     """Compare the curve with the solid inside the cloud, where there is one."""
-    surface = _checked(built.surface)
-    if not surface.trusted:
+    if not built.body.trusted:
         return ()
-    curve = built.curve
-    handles, loops = solid_loops(surface)[0], graph.loop_count(len(curve.nodes), curve.edges)
+    curve, handles, loops = built.curve, built.body.handles, built.loops
     places = np.concatenate([curve.nodes, _places(built)])
-    outside = float((surface.winding_numbers(places) < OUTSIDE).mean())
+    outside = float((built.surface.winding_numbers(places) < OUTSIDE).mean())
     return (
         "" if handles is None or handles <= loops else f"the body has {handles} handles, the curve only {loops} loops",
         "" if handles is None or handles >= loops else f"the curve has {loops} loops, the body only {handles} handles",
         f"{outside:.0%} of the curve lies outside the body" if outside > OUTSIDE_SHARE else "",
     )
-
-
-def _checked(surface: Surface) -> Surface:
-    """Return the surface, thinned where it has many points, with the check that it has an inside."""
-    step = -(-len(surface.points) // PROBED)
-    points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
-    thinned = Surface(points, normals, step * surface.areas[::step])
-    return checked(thinned, seed=0)
 
 
 def _places(built: Built) -> Points:

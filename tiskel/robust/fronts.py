@@ -22,7 +22,7 @@ from tiskel.arrays import Indices, Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.params import ContractionParams
 from tiskel.rings import smallest_distances
-from tiskel.robust.network import Network, neighbour_network
+from tiskel.robust.network import Network, neighbour_network, own_axes
 from tiskel.trace import Status, StepRecord, Stopwatch, Trace
 
 STRIDE = 2.5  # of the front, in spacings: thinner sections would fall apart between the points
@@ -56,6 +56,8 @@ def contract_robust(points: Points, params: ContractionParams, weights: Numbers 
         raise TiskelError("method robust takes no weights; leave them out, or choose method lbc or gls")
     watch = Stopwatch()
     with watch.measure("rings"):
+        axes = own_axes(points)
+        points = np.ascontiguousarray(points @ axes.T)
         network = neighbour_network(points, params.neighbours_for(len(points)))
         averaging, rings = network.averaging(), network.rings()
         part = parts(network)
@@ -75,11 +77,11 @@ def contract_robust(points: Points, params: ContractionParams, weights: Numbers 
         strides = _strides(network, there, averaging)
         ratio = float(smallest_distances(there, rings).sum() / first.sum())
         steps.append(StepRecord(0.0, ratio, None, None, len(points), step_watch.seconds))
-        history.append((everyone, there))
+        history.append((everyone, np.ascontiguousarray(there @ axes)))
     never = np.full(len(points), -1, np.int32)
     return Trace(
-        there, everyone, rings, never, never, tuple(history), tuple(steps), Status.CONVERGED, watch.seconds["rings"],
-        sections.section, sections.level,
+        history[-1][1], everyone, rings, never, never, tuple(history), tuple(steps), Status.CONVERGED,
+        watch.seconds["rings"], sections.section, sections.level,
     )  # fmt: skip
 
 
@@ -91,12 +93,28 @@ def parts(network: Network) -> Indices:
     return np.where(large[part], part, -1).astype(np.int32)
 
 
-def front(network: Network, there: Points, strides: Numbers, part: Indices, averaging: sparse.csr_array) -> Numbers:
+def front_from_aside(network: Network, there: Points) -> Sections:
+    """Return the sections of one more front over a contracted cloud (n, 3), from a tip off the way of the others."""
+    averaging = network.averaging()
+    strides = _strides(network, there, averaging)
+    return cut(network, front(network, there, strides, parts(network), averaging, aside=True))
+
+
+def front(
+    network: Network,
+    there: Points,
+    strides: Numbers,
+    part: Indices,
+    averaging: sparse.csr_array,
+    *,
+    aside: bool = False,
+) -> Numbers:
     """Return (n,) the distance from a tip of each part in strides, NaN for debris.
 
     Measured between contracted positions (n, 3), plus a share of the original
     length. A tip is the point farthest from the point farthest from the point
-    that is farthest from the mean.
+    that is farthest from the mean; aside of that way lies the point that is
+    farthest from both of its ends.
     """
     first, second = network.edges.T
     length = np.linalg.norm(there[first] - there[second], axis=1)
@@ -108,7 +126,9 @@ def front(network: Network, there: Points, strides: Numbers, part: Indices, aver
         rows = np.flatnonzero(part == number)
         start = rows[((there[rows] - there[rows].mean(axis=0)) ** 2).sum(axis=1).argmax()]
         for _ in range(2):
-            start = rows[dijkstra(graph, directed=False, indices=start)[rows].argmax()]
+            behind, start = start, rows[dijkstra(graph, directed=False, indices=start)[rows].argmax()]
+        if aside:
+            start = rows[dijkstra(graph, directed=False, indices=[behind, start])[:, rows].min(axis=0).argmax()]
         distance[rows] = dijkstra(graph, directed=False, indices=start)[rows]
     for _ in range(SMOOTHED):
         distance = averaging @ distance
