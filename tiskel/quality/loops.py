@@ -30,6 +30,7 @@ from tiskel.quality.surface import Surface
 
 LEVELS = (0.25, 0.3, 0.4)  # winding numbers; noise outside stays below, tubes of one spacing's radius rise above
 STEP = 1.2  # of the grid, in spacings
+UNDECIDED = (0.1, 0.6)  # winding numbers about the levels, with what they change within a cell
 MAX_CELLS = 1_000_000
 COARSEST = 2.5  # spacings; on a coarser grid thin parts would be missed
 
@@ -95,9 +96,22 @@ def _grid_step(extent: Points, spacing: float) -> float:
 
 
 def _winding_grid(surface: Surface, low: Points, high: Points, step: float) -> Numbers:
+    """Return winding numbers on a grid: at every eighth place, and at all places where it matters.
+
+    These are the ones near the surface, and those between an inside and an
+    outside, as in the holes of a scan; elsewhere it is that of the place before.
+    """
     axes = [np.arange(a - 1.5 * step, b + 2.5 * step, step) for a, b in zip(low, high, strict=True)]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    return surface.winding_numbers(places.reshape(-1, 3)).reshape(places.shape[:3])
+    coarse = places[::2, ::2, ::2]
+    known = surface.winding_numbers(coarse.reshape(-1, 3)).reshape(coarse.shape[:3])
+    grid = np.kron(known, np.ones((2, 2, 2)))[tuple(slice(len(axis)) for axis in axes)]
+    near = np.zeros(grid.shape, bool)
+    near[tuple(np.round((surface.points - places[0, 0, 0]) / step).astype(int).T)] = True
+    needed = ndimage.binary_dilation(near, np.ones((3, 3, 3)), iterations=2)
+    needed |= ndimage.binary_dilation((grid > UNDECIDED[0]) & (grid < UNDECIDED[1]), np.ones((3, 3, 3)))
+    grid[needed] = surface.winding_numbers(places[needed])
+    return np.asarray(grid)
 
 
 def betti_numbers(cubes: Grid) -> tuple[int, int, int]:
