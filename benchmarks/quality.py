@@ -45,6 +45,7 @@ OUT = HERE / "quality"
 REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", HERE / ".." / ".." / "shared" / "reference")) / "clouds"
 METHODS = ("lbc", "gls", "robust")
 TRUTH = "truth"  # the analytic skeleton, under the same measures: what they can be at best
+SCORED = "TISKEL_SCORED_COMMIT"
 RANDOM, RANDOM_COUNT = "random graphs", 100
 BODIES, SCANS = "no curve skeleton", "scans and models"
 DEGRADED: dict[str, dict[str, float]] = {
@@ -72,10 +73,11 @@ Row = dict[str, Any]
 
 
 def commit() -> str:
-    """Return the hash of the commit that is scored."""
-    return subprocess.run(
-        ["git", "rev-parse", "HEAD"], cwd=HERE, capture_output=True, text=True, check=True
-    ).stdout.strip()
+    """Return the hash of the commit that is scored: what HEAD was when the run began."""
+    if SCORED not in os.environ:
+        words = ["git", "rev-parse", "HEAD"]
+        os.environ[SCORED] = subprocess.run(words, cwd=HERE, capture_output=True, text=True, check=True).stdout.strip()
+    return os.environ[SCORED]
 
 
 def random_seeds() -> list[int]:
@@ -218,7 +220,7 @@ def page(rows: list[Row], settings: list[str]) -> str:
         "are means in local radii; spurious ends are shares of the true ones; inside, boundedness, centredness and "
         "smoothness are those of the curve; seconds are medians of contraction and graph together, one thread, two "
         "processes side by side. The lines called truth are the analytic skeletons under the same measures. "
-        f"{', '.join(s for s in settings if s in HARSHER) or 'None'} are reported only.\n\n"
+        f"The targets are those of the clean and the degraded settings; {', '.join(HARSHER)} are reported only.\n\n"
         f"{HEAD}\n" + "\n".join(lines) + "\n\n"
         f"Components and loops right on the degraded clouds ({', '.join(DEGRADED)}) together: "
         + "; ".join(totals(rows, method) for method in METHODS)
@@ -244,6 +246,7 @@ def main() -> None:
             print(json.dumps(row), flush=True)
         return
     settings = [s for s in words or EVERY if s != SCANS or REFERENCE.is_dir()]
+    commit()
     with ThreadPoolExecutor(2) as pool:
         rows = [row for found in pool.map(in_process, settings) for row in found]
     OUT.mkdir(exist_ok=True)
