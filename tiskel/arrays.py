@@ -39,6 +39,13 @@ def first_of_duplicates(points: Points) -> Indices:
     return first[inverse.ravel()].astype(np.int32)
 
 
+def resolved(into: Indices) -> Indices:
+    """Return for each row the one at the end of its chain of replacements; a row that stays names itself."""
+    while not np.array_equal(into, into[into]):
+        into = into[into]
+    return into
+
+
 def check_solid(points: Points) -> None:
     """Raise where distinct points are too few, or lie on a line or a plane: there is no body to contract."""
     if len(points) < MIN_POINTS:

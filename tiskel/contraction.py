@@ -15,6 +15,7 @@ from tiskel.arrays import (
     finite_rows,
     first_of_duplicates,
     normalisation,
+    resolved,
 )
 from tiskel.errors import TiskelError
 from tiskel.gls import contract_gls
@@ -72,10 +73,8 @@ class Contraction:
         """Return (n,), for each point of the cloud the place in ``points`` of the one it ended up in."""
         place = np.full(len(self.cloud), -1, np.int32)
         place[self.rows] = np.arange(len(self.rows), dtype=np.int32)
-        into = np.where(self.merged_into < 0, np.arange(len(self.cloud)), self.merged_into)
-        while not np.array_equal(into, into[into]):
-            into = into[into]
-        return place[into]
+        into = np.where(self.merged_into < 0, np.arange(len(self.cloud), dtype=np.int32), self.merged_into)
+        return place[resolved(into)]
 
 
 def contract(

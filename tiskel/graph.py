@@ -51,6 +51,19 @@ def neighbour_lists(count: int, edges: Indices) -> list[list[int]]:
     return [sorted(neighbours) for neighbours in around]
 
 
+def passages(count: int, edges: Indices) -> Indices:
+    """Return (d, 3) one neighbour, the node, and the other neighbour, of every node with exactly two."""
+    around = enumerate(neighbour_lists(count, edges))
+    return np.array([(o[0], node, o[1]) for node, o in around if len(o) == 2], np.int32).reshape(-1, 3)
+
+
+def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
+    """Return (v,) the mean distance of each node's points to it, 0 where it has none."""
+    distance = np.linalg.norm(cloud - nodes[node_of_point], axis=1)
+    counts = np.bincount(node_of_point, minlength=len(nodes))
+    return np.asarray(np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1))
+
+
 def branches(count: int, edges: Indices) -> tuple[Indices, ...]:
     """Return the branches as ordered node lists.
 

@@ -24,9 +24,7 @@ class ContractionParams:
     """Settings of :func:`tiskel.contract`; lengths in normalised units, weights without unit."""
 
     method: Method = "robust"
-    neighbours: int | None = (
-        None  #: k nearest, the point included; None: 14 for robust, else clip(round(0.012 n), 8, 30) [T]
-    )
+    neighbours: int | None = None  #: k nearest, the point included; None: 14 for robust, else published_neighbours [T]
     max_steps: int | None = None  #: None: 3 for robust, 10 for gls, 20 for lbc [T]
     normalise: Normalisation = "side"  #: what is scaled to 1.6: the longest side [T], or the diagonal (Wen et al.)
     solver: Solver = "scipy"

@@ -155,7 +155,7 @@ def _published_skeleton(c: Contraction, params: SkeletonParams) -> Skeleton:
     return Skeleton(
         nodes=nodes,
         edges=edges,
-        radius=node_radii(nodes, c.cloud, node_of_point),
+        radius=graph.node_radii(nodes, c.cloud, node_of_point),
         branches=graph.branches(len(nodes), edges),
         node_of_point=node_of_point,
         cloud=c.cloud,
@@ -165,13 +165,6 @@ def _published_skeleton(c: Contraction, params: SkeletonParams) -> Skeleton:
         rows=c.rows,
         warnings=_warnings(nodes),
     )
-
-
-def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
-    """Return (v,) the mean distance of each node's points to it, 0 where it has none."""
-    distance = np.linalg.norm(cloud - nodes[node_of_point], axis=1)
-    counts = np.bincount(node_of_point, minlength=len(nodes))
-    return np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1)
 
 
 def prune_spurs(skeleton: Skeleton) -> Skeleton:
@@ -188,7 +181,7 @@ def prune_spurs(skeleton: Skeleton) -> Skeleton:
         nodes=nodes,
         edges=edges,
         node_of_point=node_of_point,
-        radius=node_radii(nodes, s.cloud, node_of_point),
+        radius=graph.node_radii(nodes, s.cloud, node_of_point),
         branches=graph.branches(len(nodes), edges),
     )
 

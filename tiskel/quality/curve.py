@@ -79,10 +79,8 @@ TINY = np.finfo(float).tiny
 
 def two_sided(nodes: Points, edges: Indices) -> tuple[Indices, Points, Points]:
     """Return the vertices (d,) with exactly two neighbours, and the vectors (d, 3) to either."""
-    around = graph.neighbour_lists(len(nodes), edges)
-    rows = np.array([(v, *others) for v, others in enumerate(around) if len(others) == 2], np.int32).reshape(-1, 3)
-    vertices = rows[:, 0]
-    return vertices, nodes[rows[:, 1]] - nodes[vertices], nodes[rows[:, 2]] - nodes[vertices]
+    before, vertices, after = graph.passages(len(nodes), edges).T
+    return vertices, nodes[before] - nodes[vertices], nodes[after] - nodes[vertices]
 
 
 def turns(before: Points, after: Points) -> Numbers:

@@ -54,7 +54,7 @@ def open_ends(curve: ConeCurve, network: Network) -> list[OpenEnd]:
     tree, found = cKDTree(network.points[rows]), []
     for path in paths:
         end, radius = int(path[0]), float(curve.radii[path[0]])
-        direction = curve.nodes[end] - curve.nodes[path[min(2, len(path) - 1)]]
+        direction = curve.heading(path)
         direction /= max(float(np.linalg.norm(direction)), np.finfo(float).tiny)
         near = rows[np.sort(np.array(tree.query_ball_point(curve.nodes[end], AROUND * radius), int))]
         cap = near[(network.points[near] - curve.nodes[end]) @ direction > AHEAD * radius]

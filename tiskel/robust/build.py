@@ -1,11 +1,12 @@
 """From sections to a curve skeleton: the graph, its clean-up, and the fit."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from tiskel import graph
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Indices, Numbers, Points
 from tiskel.quality.curve import curve_samples
 from tiskel.quality.surface import Surface
 from tiskel.robust.body import Body, body_of
@@ -45,6 +46,13 @@ class Built:
     body: Body
     gaps: int
 
+    @cached_property
+    def winding(self) -> Numbers:
+        """Winding numbers of the body about the nodes and about places along the curve."""
+        curve = self.curve
+        between = curve_samples(curve.nodes, curve.edges, PLACES).points if len(curve.edges) else np.zeros((0, 3))
+        return self.surface.winding_numbers(np.concatenate([curve.nodes, between]))
+
     @property
     def loops(self) -> int:
         return graph.loop_count(len(self.curve.nodes), self.curve.edges)
@@ -68,15 +76,11 @@ def doubt(built: Built) -> float:
 
     And one for every loop more or less than the body has handles.
     """
-    curve, feet = built.curve, built.feet
     off = 0 if built.body.handles is None else abs(built.loops - built.body.handles)
-    if len(curve.edges) == 0:
+    if len(built.curve.edges) == 0:
         return float(off)
-    places = np.concatenate([curve.nodes, curve_samples(curve.nodes, curve.edges, PLACES).points])
-    radius = curve.radii[curve.edges[feet.edge]]
-    local = (1 - feet.share) * radius[:, 0] + feet.share * radius[:, 1]
-    outside = float((built.surface.winding_numbers(places) < OUTSIDE).mean())
-    return off + outside + float((np.abs(feet.residual) > FAR * local).mean())
+    outside = float((built.winding < OUTSIDE).mean())
+    return off + outside + float((np.abs(built.feet.residual) > FAR * built.feet.radii(built.curve)).mean())
 
 
 def _built(network: Network, surface: Surface, body: Body, section: Indices, level: Indices) -> Built:

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from tiskel import graph
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.robust.curve import ConeCurve
+from tiskel.solve import BACKENDS
 
 STRAIGHT, EVEN = 0.1, 0.3  # weights of straightness and of even radii, each per node as heavy as its share of points
 DAMPING, HOLD = 0.01, 0.005  # weights of a step, and of the place where the fit began
@@ -49,6 +49,11 @@ class Feet:
         """Return the feet (p, 3)."""
         first, last = curve.edges[self.edge].T
         return np.asarray(curve.nodes[first] + self.share[:, None] * (curve.nodes[last] - curve.nodes[first]))
+
+    def radii(self, curve: ConeCurve) -> Numbers:
+        """Return (p,) the radii of the cones there."""
+        first, last = curve.edges[self.edge].T
+        return np.asarray((1 - self.share) * curve.radii[first] + self.share * curve.radii[last])
 
     def node(self, curve: ConeCurve) -> Indices:
         """Return (p,) the nearer end of the edge."""
@@ -127,8 +132,7 @@ def _step(curve: ConeCurve, points: Points, at: Feet, start: Points) -> Numbers:
         where = np.repeat(unknowns, width, axis=1).ravel(), np.tile(unknowns, (1, width)).ravel()
         matrix = matrix + sparse.coo_array((blocks.ravel(), where), shape=matrix.shape).tocsc()
         right += np.bincount(unknowns.ravel(), sides.ravel(), minlength=len(right))
-    factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return np.asarray(factor.solve(right)).reshape(count, 4)
+    return BACKENDS["scipy"](matrix.tocsc())(right).reshape(count, 4)
 
 
 Term = tuple[Indices, Numbers, Numbers]  # unknowns (t, k), blocks (t, k, k) of the matrix, right-hand sides (t, k)
@@ -153,7 +157,7 @@ def _data(curve: ConeCurve, points: Points, at: Feet) -> Term:
 
 def _smoothness(curve: ConeCurve, heavy: float) -> list[Term]:
     """Return the terms that hold every node of two neighbours between them."""
-    triples = _triples(curve)
+    triples = graph.passages(len(curve.nodes), curve.edges)
     if len(triples) == 0:
         return []
     values = np.concatenate([curve.nodes, curve.radii[:, None]], axis=1)
@@ -166,8 +170,3 @@ def _smoothness(curve: ConeCurve, heavy: float) -> list[Term]:
         off = (bend * values[triples, axis]).sum(axis=1)
         terms.append((4 * triples + axis, weight * heavy * blocks, -weight * heavy * bend * off[:, None]))
     return terms
-
-
-def _triples(curve: ConeCurve) -> Indices:
-    around = graph.neighbour_lists(len(curve.nodes), curve.edges)
-    return np.array([(o[0], v, o[1]) for v, o in enumerate(around) if len(o) == 2], np.int32).reshape(-1, 3)

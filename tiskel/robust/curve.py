@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tiskel import graph
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Numbers, Points, resolved
 
 
 @dataclass(frozen=True)
@@ -46,18 +46,15 @@ class ConeCurve:
         both = [path for branch in self.branches() if len(branch) > 1 for path in (branch, branch[::-1])]
         return [path for path in both if (degree[path[0]] == 1 if ends else degree[path[0]] > 2)]
 
+    def heading(self, path: Indices) -> Numbers:
+        """Return the direction that a path from an end looks in, taken over two edges where there are two."""
+        return np.asarray(self.nodes[path[0]] - self.nodes[path[min(2, len(path) - 1)]])
+
 
 def tidy_edges(edges: Indices) -> Indices:
     """Return edges with the lower node first, each once, none from a node to itself."""
     ordered = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
     return np.unique(ordered[ordered[:, 0] != ordered[:, 1]], axis=0).reshape(-1, 2)
-
-
-def resolved(into: Indices) -> Indices:
-    """Follow chains of replacement to their ends."""
-    while not np.array_equal(into, into[into]):
-        into = into[into]
-    return into
 
 
 def keeps_loops(curve: ConeCurve, into: Indices) -> bool:

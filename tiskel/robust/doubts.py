@@ -3,11 +3,8 @@
 import numpy as np
 
 from tiskel import graph
-from tiskel.arrays import Points
-from tiskel.quality.curve import curve_samples
 from tiskel.robust.build import Built
 
-PLACES = 200  # on the curve
 OUTSIDE, OUTSIDE_SHARE = 0.25, 0.02  # winding number, share of the places
 FLAT, FLAT_SHARE = 0.15, 0.2  # ratio of how much normals spread both ways across the curve; share of such points
 SPARSE, SPARSE_SHARE = 1.5, 0.05  # spacings in a radius; share of such nodes
@@ -64,16 +61,10 @@ def _body(built: Built) -> tuple[str, ...]:
     """Compare the curve with the solid inside the cloud, where there is one."""
     if not built.body.trusted:
         return ()
-    curve, handles, loops = built.curve, built.body.handles, built.loops
-    places = np.concatenate([curve.nodes, _places(built)])
-    outside = float((built.surface.winding_numbers(places) < OUTSIDE).mean())
+    handles, loops = built.body.handles, built.loops
+    outside = float((built.winding < OUTSIDE).mean())
     return (
         "" if handles is None or handles <= loops else f"the body has {handles} handles, the curve only {loops} loops",
         "" if handles is None or handles >= loops else f"the curve has {loops} loops, the body only {handles} handles",
         f"{outside:.0%} of the curve lies outside the body" if outside > OUTSIDE_SHARE else "",
     )
-
-
-def _places(built: Built) -> Points:
-    curve = built.curve
-    return curve_samples(curve.nodes, curve.edges, PLACES).points if len(curve.edges) else np.zeros((0, 3))

@@ -11,6 +11,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Indices, Numbers
+from tiskel.graph import node_radii
 from tiskel.robust.cones import Feet
 from tiskel.robust.curve import ConeCurve, with_nodes
 from tiskel.robust.fronts import STRIDE, line_centres
@@ -24,8 +25,7 @@ FEWEST = 12  # points of a limb
 
 def with_missed_limbs(curve: ConeCurve, network: Network, at: Feet) -> ConeCurve | None:
     """Return the curve with a branch for every connected set of points that stands out of it, None where none does."""
-    ends = curve.edges[at.edge]
-    radius = (1 - at.share) * curve.radii[ends[:, 0]] + at.share * curve.radii[ends[:, 1]]
+    radius = at.radii(curve)
     least = np.maximum(OFF * radius, max(OFF_SPACINGS * network.spacing, OFF_DEVIATIONS * at.deviation))
     places = at.places(curve)
     off = np.flatnonzero(at.residual > least)
@@ -56,14 +56,13 @@ def _with_limb(curve: ConeCurve, network: Network, rows: Indices, height: Number
     layer = np.floor((height - height.min()) / stride).astype(np.int32)
     layer = np.unique(layer, return_inverse=True)[1].ravel().astype(np.int32)
     count, first = int(layer.max()) + 1, len(curve.nodes)
-    nodes, size = line_centres(network.points[rows], network.normals[rows], layer, count)
-    distance = np.linalg.norm(network.points[rows] - nodes[layer], axis=1)
+    nodes = line_centres(network.points[rows], network.normals[rows], layer, count)[0]
     root = int(np.bincount(foot[layer == 0]).argmax())
     chain = np.array([root, *range(first, first + count)], np.int32)
     owner = curve.owner.copy()
     owner[rows] = first + layer
     levels = curve.levels[root] + np.arange(1, count + 1, dtype=np.int32)
-    radii = np.bincount(layer, distance, minlength=count) / size
+    radii = node_radii(nodes, network.points[rows], layer)
     return with_nodes(
         replace(curve, owner=owner), nodes, radii, np.stack([chain[:-1], chain[1:]], axis=1), levels
     )  # fmt: skip

@@ -20,12 +20,12 @@ TAPER = 0.5, 0.9  # radius of a new tip in that of the end: the first guess, and
 def without_stubs(curve: ConeCurve, points: Points) -> ConeCurve:
     """Contract, the shortest first, limbs whose points do not even leave the ball of their joint."""
     while True:
-        stubs = []
+        stubs, degree, around = [], curve.degrees, curve.around()
         for path in curve.paths_from(ends=True):
             joint = int(path[-1])
             rows = np.flatnonzero(np.isin(curve.owner, path[:-1]))
-            if curve.degrees[joint] > 2 and len(rows):
-                others = [curve.radii[node] for node in curve.around()[joint] if node != path[-2]]
+            if degree[joint] > 2 and len(rows):
+                others = [curve.radii[node] for node in around[joint] if node != path[-2]]
                 radius = min(curve.radii[joint], float(np.mean(others)))
                 stubs.append((float(np.linalg.norm(points[rows] - curve.nodes[joint], axis=1).max()) / radius, path))
         shortest = min(stubs, key=lambda stub: (stub[0], int(stub[1][0])), default=None)
@@ -54,9 +54,9 @@ def without_contained_ends(curve: ConeCurve) -> ConeCurve:
 
 def without_explained_limb(curve: ConeCurve, points: Points, spacing: float) -> ConeCurve | None:
     """Contract the limb that sticks out least of what the rest of the curve explains; None where all do enough."""
-    limbs = []
+    limbs, degree = [], curve.degrees
     for path in curve.paths_from(ends=True):
-        if curve.degrees[path[-1]] > 2:
+        if degree[path[-1]] > 2:
             radius = min(float(curve.radii[path[:-1]].max()), float(curve.radii[path[-1]]))
             asked = max(STICKS_OUT * radius, STICKS_OUT_SPACINGS * spacing)
             limbs.append((_protrusion(curve, points, path) / asked, path))
@@ -87,7 +87,7 @@ def with_tips(curve: ConeCurve, points: Points, at: Feet, spacing: float) -> Con
         end = int(path[0])
         stands = ((edges[:, 0] == end) & (at.share == 0)) | ((edges[:, 1] == end) & (at.share == 1))
         mine = at.rows[stands | (curve.owner[at.rows] == end)]
-        tip = _tip(points[mine] - curve.nodes[end], curve.nodes[end] - curve.nodes[path[min(2, len(path) - 1)]])
+        tip = _tip(points[mine] - curve.nodes[end], curve.heading(path))
         reach, radius = float(np.linalg.norm(tip)), float(curve.radii[end])
         if reach - radius > max(GROWS * radius, least):
             new = min(max(TAPER[0] * radius, 0.5 * spacing), TAPER[1] * radius)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from tiskel.arrays import Indices
+from tiskel.graph import node_radii
 from tiskel.robust.curve import ConeCurve, tidy_edges
 from tiskel.robust.fronts import line_centres
 from tiskel.robust.network import Network
@@ -25,10 +26,8 @@ def centred(curve: ConeCurve, network: Network) -> ConeCurve:
     """Return the curve with every node in the middle of its points, and their mean distance as its radius."""
     rows = np.flatnonzero(curve.owner >= 0)
     label, count = curve.owner[rows], len(curve.nodes)
-    nodes, size = line_centres(network.points[rows], network.normals[rows], label, count)
-    distance = np.linalg.norm(network.points[rows] - nodes[label], axis=1)
-    radii = np.bincount(label, distance, minlength=count) / np.maximum(size, 1)
-    return replace(curve, nodes=nodes, radii=radii)
+    nodes = line_centres(network.points[rows], network.normals[rows], label, count)[0]
+    return replace(curve, nodes=nodes, radii=node_radii(nodes, network.points[rows], label))
 
 
 def _links(pairs: Indices, levels: Indices) -> Indices:
