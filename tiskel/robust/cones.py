@@ -68,18 +68,18 @@ def fit_cones(curve: ConeCurve, points: Points, rounds: int) -> tuple[ConeCurve,
     nearby = nearby_edges(curve)
     owned = np.flatnonzero(curve.owner >= 0)
     rows: Indices = owned[(nearby[curve.owner[owned]] >= 0).any(axis=1)].astype(np.int32)
-    candidates, start = nearby[curve.owner[rows]], curve.nodes
+    lists, start = curve.owner[rows], curve.nodes
     thinnest = THINNEST * np.median(curve.radii)
     curve = replace(curve, radii=np.maximum(curve.radii, thinnest))
     for _ in range(rounds):
-        step = _step(curve, points, feet(curve, points, rows, candidates), start)
+        step = _step(curve, points, feet(curve, points, rows, lists, nearby), start)
         length = np.linalg.norm(step[:, :3], axis=1)
         within = np.minimum(1, STEP * curve.radii / np.maximum(length, np.finfo(float).tiny))
         radii = np.clip(
             curve.radii + step[:, 3], np.maximum(SHRINK * curve.radii, thinnest), GROW * curve.radii
         )  # fmt: skip
         curve = replace(curve, nodes=curve.nodes + within[:, None] * step[:, :3], radii=radii)
-    return curve, feet(curve, points, rows, candidates)
+    return curve, feet(curve, points, rows, lists, nearby)
 
 
 def nearby_edges(curve: ConeCurve) -> Indices:
@@ -98,24 +98,26 @@ def nearby_edges(curve: ConeCurve) -> Indices:
     return out
 
 
-def feet(curve: ConeCurve, points: Points, rows: Indices, candidates: Indices) -> Feet:
-    """Return the foot of each of some points on the candidate edge (p, w) whose surface is nearest."""
-    share, residual = cone_residuals(curve, points[rows], np.maximum(candidates, 0))
-    best = np.where(candidates >= 0, np.abs(residual), np.inf).argmin(axis=1)
-    at = np.arange(len(rows)), best
-    return Feet(rows, candidates[at], share[at], residual[at])
+def feet(curve: ConeCurve, points: Points, rows: Indices, lists: Indices, candidates: Indices) -> Feet:
+    """Return the feet of some points, each on the edge of its list of candidates (l, w) whose surface is nearest."""
+    return _placed(curve, points, rows, lists, candidates, signed=False)
 
 
-def cone_residuals(curve: ConeCurve, points: Points, edges: Indices) -> tuple[Numbers, Numbers]:
-    """Return (p, w) the share along each point's edges where its foot is, and the distance to the surface there."""
-    first, last = curve.edges.T
-    start, along = curve.nodes[first], curve.nodes[last] - curve.nodes[first]
-    square = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
-    offset = points[:, None] - start[edges]
-    share = np.clip(np.einsum("pwc,pwc->pw", offset, along[edges]) / square[edges], 0, 1)
-    distance = np.linalg.norm(offset - share[..., None] * along[edges], axis=2)
-    ends = curve.radii[first], curve.radii[last]
-    return share, distance - (1 - share) * ends[0][edges] - share * ends[1][edges]
+def distances(curve: ConeCurve, points: Points, rows: Indices, edges: Indices) -> Numbers:
+    """Return (p,) the signed distances of some points to the union of the cones of some edges, negative inside."""
+    return _placed(curve, points, rows, np.zeros(len(rows), np.int32), edges[None], signed=True).residual
+
+
+def _placed(
+    curve: ConeCurve, points: Points, rows: Indices, lists: Indices, candidates: Indices, signed: bool
+) -> Feet:  # fmt: skip
+    from tiskel.kernels.cones import cone_feet
+
+    count = len(rows)
+    edge, share, residual = np.empty(count, np.int32), np.empty(count), np.empty(count)
+    tables = [np.ascontiguousarray(table, np.int32) for table in (rows, lists, candidates)]
+    cone_feet(points, *tables, curve.nodes, curve.radii, curve.edges, signed, edge, share, residual)
+    return Feet(tables[0], edge, share, residual)
 
 
 def _step(curve: ConeCurve, points: Points, at: Feet, start: Points) -> Numbers:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from tiskel.arrays import Indices, Numbers, Points
-from tiskel.robust.cones import Feet, cone_residuals
+from tiskel.robust.cones import Feet, distances
 from tiskel.robust.curve import ConeCurve, contract_nodes, with_nodes
 
 BARELY = 1.0  # a limb that reaches no further from its joint, in the joint's radius, is none
@@ -75,8 +75,7 @@ def _protrusion(curve: ConeCurve, points: Points, path: Indices) -> float:
         return 0.0
     if not len(rest):
         return np.inf
-    _, residual = cone_residuals(curve, points[rows], np.broadcast_to(rest, (len(rows), len(rest))))
-    return float(np.quantile(residual.min(axis=1), FARTHEST))
+    return float(np.quantile(distances(curve, points, rows, rest), FARTHEST))
 
 
 def with_tips(curve: ConeCurve, points: Points, at: Feet, spacing: float) -> ConeCurve | None:
