@@ -22,9 +22,11 @@ from tiskel.robust.network import Network, neighbour_network
 from tiskel.robust.sections import section_curve
 
 ROUNDS, ROUNDS_AGAIN = 4, 2  # of the fit, and after a change to the graph
-DOUBTFUL = 0.02  # of the curve outside or of the points far off: another front is tried, and the better curve kept
-CLEARLY = 0.6  # of the doubt that the other front may leave, to be taken
+DOUBTFUL = 0.009  # of the curve outside or of the points far off: other fronts are tried, fewer the less there is
 PLACES, OUTSIDE, FAR = 200, 0.4, 0.35  # on the curve; winding number; local radii
+THIN = 2.0  # spacings; thinner places say nothing of inside and outside
+CLEARLY = 0.7  # of the doubt that another front may leave, to be taken
+FRONTS = 6  # at most
 TIPS = 3  # nodes that an end may grow by
 
 
@@ -47,11 +49,19 @@ class Built:
     gaps: int
 
     @cached_property
-    def winding(self) -> Numbers:
-        """Winding numbers of the body about the nodes and about places along the curve."""
+    def places(self) -> tuple[Points, Numbers]:
+        """The nodes and places along the curve (q, 3), and the radii there (q,)."""
         curve = self.curve
-        between = curve_samples(curve.nodes, curve.edges, PLACES).points if len(curve.edges) else np.zeros((0, 3))
-        return self.surface.winding_numbers(np.concatenate([curve.nodes, between]))
+        if len(curve.edges) == 0:
+            return curve.nodes, curve.radii
+        between = curve_samples(curve.nodes, curve.edges, PLACES)
+        radii = curve.radii[curve.edges[between.edges]].mean(axis=1)
+        return np.concatenate([curve.nodes, between.points]), np.concatenate([curve.radii, radii])
+
+    @cached_property
+    def winding(self) -> Numbers:
+        """Winding numbers (q,) of the body about these places."""
+        return self.surface.winding_numbers(self.places[0])
 
     @property
     def loops(self) -> int:
@@ -59,28 +69,35 @@ class Built:
 
 
 def build(points: Points, contracted: Points, section: Indices, level: Indices, k: int) -> Built:
-    """Return the curve of a cloud (n, 3) whose points contract to (n, 3), with their sections and levels (n,)."""
+    """Return the curve of a cloud (n, 3) whose points contract to (n, 3), with their sections and levels (n,).
+
+    The front fails where it runs along two limbs at once, which depends on where
+    it began: while a curve is in doubt, others from further tips are tried.
+    """
     network = neighbour_network(points, k)
     surface = network.oriented(contracted)
     body = body_of(surface)
-    first = _built(network, surface, body, section, level)
-    if doubt(first) < DOUBTFUL:
-        return first
-    again = front_from_aside(network, contracted)
-    second = _built(network, surface, body, again.section, again.level)
-    return second if doubt(second) < CLEARLY * doubt(first) else first
+    best = _built(network, surface, body, section, level)
+    for times in range(1, FRONTS):
+        if doubt(best) < times * DOUBTFUL:
+            break
+        again = front_from_aside(network, contracted, times)
+        other = _built(network, surface, body, again.section, again.level)
+        best = other if doubt(other) < CLEARLY * doubt(best) else best
+    return best
 
 
 def doubt(built: Built) -> float:
     """Return the share of places on the curve outside the body and of points far from its cones.
 
-    And one for every loop more or less than the body has handles.
+    And one for every loop more or less than the body has handles. Where the
+    body is as thin as the points are apart, nothing is said.
     """
     off = 0 if built.body.handles is None else abs(built.loops - built.body.handles)
-    if len(built.curve.edges) == 0:
-        return float(off)
-    outside = float((built.winding < OUTSIDE).mean())
-    return off + outside + float((np.abs(built.feet.residual) > FAR * built.feet.radii(built.curve)).mean())
+    spacing = built.network.spacing
+    outside = (built.winding < OUTSIDE) & (built.places[1] > THIN * spacing)
+    far = np.abs(built.feet.residual) > np.maximum(FAR * built.feet.radii(built.curve), spacing)
+    return off + float(outside.mean()) + (float(far.mean()) if len(far) else 0.0)
 
 
 def _built(network: Network, surface: Surface, body: Body, section: Indices, level: Indices) -> Built:

@@ -93,11 +93,11 @@ def parts(network: Network) -> Indices:
     return np.where(large[part], part, -1).astype(np.int32)
 
 
-def front_from_aside(network: Network, there: Points) -> Sections:
+def front_from_aside(network: Network, there: Points, times: int) -> Sections:
     """Return the sections of one more front over a contracted cloud (n, 3), from a tip off the way of the others."""
     averaging = network.averaging()
     strides = _strides(network, there, averaging)
-    return cut(network, front(network, there, strides, parts(network), averaging, aside=True))
+    return cut(network, front(network, there, strides, parts(network), averaging, aside=times))
 
 
 def front(
@@ -107,14 +107,12 @@ def front(
     part: Indices,
     averaging: sparse.csr_array,
     *,
-    aside: bool = False,
+    aside: int = 0,
 ) -> Numbers:
     """Return (n,) the distance from a tip of each part in strides, NaN for debris.
 
     Measured between contracted positions (n, 3), plus a share of the original
-    length. A tip is the point farthest from the point farthest from the point
-    that is farthest from the mean; aside of that way lies the point that is
-    farthest from both of its ends.
+    length; aside counts the tips that others began at.
     """
     first, second = network.edges.T
     length = np.linalg.norm(there[first] - there[second], axis=1)
@@ -123,16 +121,31 @@ def front(
     graph = network.graph(np.maximum(2 * length / (strides[first] + strides[second]), np.finfo(float).tiny))
     distance = np.full(len(part), np.nan)
     for number in np.unique(part[part >= 0]):
-        rows = np.flatnonzero(part == number)
-        start = rows[((there[rows] - there[rows].mean(axis=0)) ** 2).sum(axis=1).argmax()]
-        for _ in range(2):
-            behind, start = start, rows[dijkstra(graph, directed=False, indices=start)[rows].argmax()]
-        if aside:
-            start = rows[dijkstra(graph, directed=False, indices=[behind, start])[:, rows].min(axis=0).argmax()]
+        rows: Indices = np.flatnonzero(part == number).astype(np.int32)
+        start = _tip(graph, rows, there, aside)
         distance[rows] = dijkstra(graph, directed=False, indices=start)[rows]
     for _ in range(SMOOTHED):
         distance = averaging @ distance
     return np.asarray(distance)
+
+
+def _tip(graph: sparse.csr_array, rows: Indices, there: Points, aside: int) -> int:
+    """Return a tip of a part (p,) of the cloud.
+
+    The first is the point farthest from the point farthest from the point that
+    is farthest from the mean; every other is farthest from both ends of that
+    way and the tips before it.
+    """
+
+    def farthest(places: list[int]) -> int:
+        return int(rows[dijkstra(graph, directed=False, indices=places)[:, rows].min(axis=0).argmax()])
+
+    outermost = int(rows[((there[rows] - there[rows].mean(axis=0)) ** 2).sum(axis=1).argmax()])
+    behind = farthest([outermost])
+    tips = [behind, farthest([behind])]
+    for _ in range(aside):
+        tips.append(farthest(tips))
+    return tips[-1]
 
 
 def cut(network: Network, distance: Numbers) -> Sections:

@@ -69,8 +69,8 @@ def _protrusion(curve: ConeCurve, points: Points, path: Indices) -> float:
     own = np.isin(curve.owner, path[:-1])
     near = curve.owner == path[-1]
     near[near] = np.linalg.norm(points[near] - curve.nodes[path[0]], axis=1) < 1.3 * curve.radii[path[0]]
-    rows = np.flatnonzero(own | near)
-    rest = np.flatnonzero(~np.isin(curve.edges, path[:-1]).any(axis=1))
+    rows: Indices = np.flatnonzero(own | near).astype(np.int32)
+    rest: Indices = np.flatnonzero(~np.isin(curve.edges, path[:-1]).any(axis=1)).astype(np.int32)
     if not len(rows):
         return 0.0
     if not len(rest):
