@@ -6,6 +6,7 @@ MATLAB toolboxes, which produced the published tables.
 """
 
 from dataclasses import dataclass
+from math import inf, isfinite, pi
 from typing import Literal, get_args
 
 from tiskel.errors import TiskelError
@@ -14,6 +15,11 @@ Method = Literal["robust", "gls", "lbc"]
 Normalisation = Literal["side", "diagonal"]
 Solver = Literal["scipy", "cholmod"]
 Bars = Literal["toolbox", "max"]
+OrderRule = Literal["cross-validated", "published"]
+Model = Literal["global", "local"]
+Side = Literal["outside", "inside"]
+Twist = Literal["object", "sphere", "world"]
+Normals = Literal["surface", "pca"]
 
 MIN_POINTS = 10  #: fewer distinct points have no surface to speak of
 SIDE = 1.6  #: length that normalisation gives the longest side or the diagonal [T]
@@ -122,6 +128,86 @@ class StabilityParams:
         _at_least("bins", self.bins, 2)
 
 
+@dataclass(frozen=True, kw_only=True)
+class SurfaceParams:
+    """Settings of :func:`tiskel.fit_surface`; lengths in the input's unit, angles in radians."""
+
+    branch: str = "all"  #: a number, "all", or "longest": the longest path between two ends, through joints
+    interval: float = 0.02  #: between slices, as a share of the diagonal of the cloud [T]
+    m: tuple[float, float, float] | Literal["normal", "rotation-minimising"] = (0.0, 0.0, 1.0)  #: sets where u is 0 [T]
+    order_rule: OrderRule = "cross-validated"  #: or until the RMS error is below fit_error, in the unit of length [T]
+    least_order: int = 3  #: of the Fourier series [T]
+    most_order: int = 8  #: [T]
+    fit_error: float = 1e-3  #: of the published rule [T]
+    recentre: bool = True  #: the skeleton curve moves to the middles of its sections before the surface is fitted
+    gap: float = pi / 2  #: a section that misses a larger angle is rejected
+    least_points: int = 12  #: a section of fewer is rejected
+    uneven: float = 0.25  #: share of the radius that a point of a star-shaped section is off at most, but for a tenth
+
+    def __post_init__(self) -> None:
+        _among("order_rule", self.order_rule, get_args(OrderRule))
+        if isinstance(self.m, str):
+            _among("m", self.m, ("normal", "rotation-minimising"))
+        elif len(self.m) != 3 or not any(self.m):
+            raise TiskelError(f"m must be a direction of three numbers, not all 0, got {self.m}")
+        if self.branch not in ("all", "longest") and not self.branch.isdigit():
+            raise TiskelError(f"branch must be all, longest or a number, got {self.branch!r}")
+        if not 0 < self.interval < 1:
+            raise TiskelError(f"interval must be a share of the diagonal between 0 and 1, got {self.interval}")
+        if not 1 <= self.least_order <= self.most_order:
+            raise TiskelError(f"orders must rise from at least 1, got {self.least_order} to {self.most_order}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RollParams:
+    """Settings of :func:`tiskel.roll`; lengths in the input's unit, angles in radians, times in seconds.
+
+    omega and velocity are those of the object relative to the sphere in the
+    axes of the contact frame (twist "object"), of the sphere relative to the
+    object in the axes of the sphere's own frame at the contact ("sphere"), or
+    of the sphere in the axes of the cloud ("world"); velocities are those of
+    the material at the contact and have no part along the normal.
+    """
+
+    model: Model = "global"
+    side: Side = "outside"
+    radius: float | None = None  #: of the sphere; None: a quarter of the median radius of the surface
+    omega: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: slip
+    twist: Twist = "object"
+    duration: float | None = None  #: None: 10, or as long as the inputs last
+    rate: float = 100.0  #: rows of the trajectory per second
+    start: tuple[float, float, float, float, float] = (0.1, pi / 2, 0.1, 0.1, pi / 2)  #: u_o, v_o, u_s, v_s, psi [T]
+    start_at: tuple[float, float, float] | None = (
+        None  #: instead of u_o and v_o, the point of the surface nearest to it
+    )
+    normals: Normals = "surface"  #: where curvature comes from; "pca": normals of neighbours, as printed, to compare
+    neighbours: int = 20  #: of these normals [T]
+    meet: bool = True  #: the run ends where the sphere meets another part of the cloud
+    rtol: float = 1e-3  #: of the solver [T]
+    atol: float = 1e-5  #: [T]
+
+    def __post_init__(self) -> None:
+        _among("model", self.model, get_args(Model))
+        _among("side", self.side, get_args(Side))
+        _among("twist", self.twist, get_args(Twist))
+        _among("normals", self.normals, get_args(Normals))
+        _at_least("neighbours", self.neighbours, 6)
+        for name, count in (("omega", 3), ("velocity", 3), ("start", 5), ("start_at", 3)):
+            _finite(name, getattr(self, name), count)
+        for name in ("radius", "duration", "rate", "rtol", "atol"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < inf:
+                raise TiskelError(f"{name} must be a positive number, got {value}")
+        if self.twist != "world" and self.velocity[2] != 0:
+            raise TiskelError(f"velocity along the normal must be 0, contact is kept; got {self.velocity[2]}")
+
+    @property
+    def sigma(self) -> float:
+        """1 outside, -1 inside."""
+        return 1.0 if self.side == "outside" else -1.0
+
+
 def published_neighbours(count: int) -> int:
     """Return k = clip(round(0.012 n), 8, 30), and no more than there are points [T]."""
     return min(count, max(round(0.012 * count), 8), 30)
@@ -135,3 +221,8 @@ def _among(name: str, value: str, allowed: tuple[str, ...]) -> None:
 def _at_least(name: str, value: int | None, least: int) -> None:
     if value is not None and value < least:
         raise TiskelError(f"{name} must be at least {least}, got {value}")
+
+
+def _finite(name: str, values: tuple[float, ...] | None, count: int) -> None:
+    if values is not None and (len(values) != count or not all(map(isfinite, values))):
+        raise TiskelError(f"{name} must be {count} finite numbers, got {values}")

@@ -1,0 +1,235 @@
+"""Whole runs: against a sphere driven in SE(3), closed forms, events, inputs, and what cannot begin."""
+
+from dataclasses import replace
+from math import cos, pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+from reference.rolling import pose_over_time
+from reference.tubes import bent_tube, straight_tube, tube
+from tiskel.arrays import Numbers
+from tiskel.errors import TiskelError
+from tiskel.params import RollParams
+from tiskel.rolling.inputs import Inputs
+from tiskel.rolling.models import model_of
+from tiskel.rolling.roll import roll
+from tiskel.rolling.sphere import orientation, rotation_of
+from tiskel.rolling.trajectory import RollStatus
+from tiskel.surfaces.analytic import EllipticCylinder, Plane, Torus, cylinder
+from tiskel.surfaces.forms import forms_of
+from tiskel.surfaces.jets import ParametricSurface
+from tiskel.surfaces.nearest import nearest_place
+
+SHARP: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12, "meet": False}
+BENT = bent_tube()
+
+
+def driven(surface: ParametricSurface, p: RollParams, times: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """The same run in SE(3); see tests/reference/rolling.py."""
+    u, v, u_s, v_s, psi = p.start
+    jet = surface.jet(u, v)
+    frame = np.array(forms_of(jet, p.sigma)[:3], float).T
+    assert p.radius is not None
+    centre = np.array(jet.f, float) + p.radius * frame[:, 2]
+    twist = np.array(p.omega), np.array(p.velocity)
+    start = centre, orientation(frame, u_s, v_s, psi), u, v
+    return pose_over_time(surface, p.sigma, p.radius, start, lambda t: twist, times)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("slip", [0.0, 0.06])
+@pytest.mark.parametrize("side", ["outside", "inside"])
+@pytest.mark.parametrize("name", ["torus", "bent"])
+def test_the_pose_agrees_with_a_sphere_driven_in_space(name: str, side: Any, slip: float) -> None:
+    """Contact by closest point alone, pose in SE(3); agreement to 1e-6 at all times, spin and slip included."""
+    surface: ParametricSurface = Torus(5.0, 2.0) if name == "torus" else BENT
+    p = RollParams(
+        side=side, radius=0.3 if name == "torus" else 0.1, omega=(0.6, 0.9, 0.4), velocity=(0.0, slip, 0.0),
+        start=(0.3, 1.2, 0.1, 0.1, pi / 2), duration=4.0, rate=5.0, **SHARP,
+    )  # fmt: skip
+    r = roll(surface, p)
+    assert r.status is RollStatus.FINISHED
+    centres, rotations, places = driven(surface, p, r.t)
+    np.testing.assert_allclose(r.centre, centres, atol=1e-6)
+    np.testing.assert_allclose(rotation_of(r.orientation), rotations, atol=1e-6)
+    np.testing.assert_allclose(r.state[:, :2], places, atol=1e-6)
+
+
+@pytest.mark.parametrize("side", ["outside", "inside"])
+def test_both_contact_paths_are_equally_long_without_slip(side: Any) -> None:
+    p = RollParams(side=side, radius=0.1, omega=(0.6, 0.9, 0.4), duration=5.0, **SHARP)
+    r = roll(BENT, p)
+    # Two thousand chords and arcs: relative errors of 1e-6 each.
+    assert r.path_object == pytest.approx(r.path_sphere, rel=1e-5)
+    slipping = roll(BENT, replace(p, velocity=(0.0, 0.05, 0.0)))
+    assert abs(slipping.path_object - slipping.path_sphere) > 1e-2
+
+
+@pytest.mark.parametrize(("side", "sign"), [("outside", 1), ("inside", -1)])
+def test_once_around_a_straight_tube_takes_its_perimeter(side: Any, sign: int) -> None:
+    """T = (L/R_s + 2 pi sigma)/|omega_y|; the ellipse 2 x 1 has L = 9.688448221."""
+    time = 9.688448221 / 0.4 + 2 * pi * sign
+    p = RollParams(side=side, radius=0.4, start=(0.3, 0.0, 0.1, 0.1, 1.0), duration=time, **SHARP)
+    r = roll(EllipticCylinder(2.0, 1.0), p)
+    assert abs(r.state[-1, 0] - r.state[0, 0]) == pytest.approx(2 * pi, abs=1e-8)
+    assert r.path_sphere == pytest.approx(9.688448221, abs=1e-6)
+    if side == "outside":
+        longer = roll(EllipticCylinder(2.0, 1.0), replace(p, radius=0.5, duration=25.660081748))
+        assert abs(longer.state[-1, 0] - longer.state[0, 0]) == pytest.approx(2 * pi, abs=1e-8)
+
+
+def test_there_and_back_is_where_it_began() -> None:
+    p = RollParams(radius=0.1, omega=(0.5, 0.8, 0.3), start=(0.3, 1.2, 0.1, 0.1, 1.0), duration=3.0, **SHARP)
+    there = roll(BENT, p)
+    back = roll(BENT, replace(p, omega=(-0.5, -0.8, -0.3), start=tuple(there.state[-1].tolist())))
+    np.testing.assert_allclose(back.state[-1], p.start, atol=1e-8)
+
+
+def test_twice_the_twist_takes_half_the_time() -> None:
+    p = RollParams(radius=0.1, omega=(0.5, 0.8, 0.3), velocity=(0.01, 0.02, 0), duration=3.0, **SHARP)
+    once = roll(BENT, p)
+    twice = roll(BENT, replace(p, omega=(1.0, 1.6, 0.6), velocity=(0.02, 0.04, 0), duration=1.5))
+    np.testing.assert_allclose(twice.state[-1], once.state[-1], atol=1e-8)
+
+
+def test_the_centre_stays_a_radius_away_from_the_surface() -> None:
+    r = roll(BENT, RollParams(radius=0.1, omega=(0.5, 0.8, 0.3), duration=3.0, rate=5, **SHARP))
+    for centre in r.centre:
+        near = np.array(BENT.jet(*nearest_place(BENT, centre)).f, float)
+        assert np.linalg.norm(centre - near) == pytest.approx(0.1, abs=1e-10)
+
+
+def test_the_poles_of_the_chart_are_places_like_others() -> None:
+    """Straight over the pole of the sphere on a plane: few steps, and no jump of the pose."""
+    p = RollParams(radius=0.5, omega=(0.0, 1.0, 0.0), start=(0.0, 0.0, 0.0, 0.0, 0.0), duration=8.0)
+    r = roll(Plane(), p)
+    assert np.abs(r.state[:, 2]).max() > 1.5  # over it
+    assert r.evaluations < 300
+    assert np.abs(np.diff(r.orientation, axis=0)).max() < 0.01
+
+
+def test_the_local_model_is_exact_on_a_straight_even_tube_and_wrong_on_a_bent_one() -> None:
+    straight = straight_tube(2.0)
+    p = RollParams(radius=0.5, omega=(0.3, 0.8, 0.2), start=(0.1, 1.0, 0.1, 0.1, 1.0), duration=3.0, **SHARP)
+    ours, local = roll(straight, p), roll(straight, replace(p, model="local"))
+    np.testing.assert_allclose(local.state, ours.state, atol=1e-8)
+    p = replace(p, radius=0.1)
+    assert np.abs(roll(BENT, p).state[-1] - roll(BENT, replace(p, model="local")).state[-1]).max() > 0.01
+
+
+def test_the_local_model_runs_ahead_inside_and_behind_outside_a_bend() -> None:
+    """Bend 3, tube 0.5: v' of the local over that of the global model is 1 - (R + R_s) cos u / bend around u."""
+    v = np.linspace(0, pi, 400)
+    arc = tube(3 * np.stack([np.cos(v), -np.sin(v), 0 * v], axis=1), np.tile([0.5, 0.0, 0.0], (400, 1)))
+    for u in (0.0, 1.0, pi):
+        rates = []
+        for kind in ("local", "global"):
+            model = model_of(arc, RollParams(model=kind), 0.3)
+            rates.append(model.rates(u, 1.5, model.forms(u, 1.5), (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))[1])
+        assert rates[0] / rates[1] == pytest.approx(1 - 0.8 * cos(u) / 3, abs=1e-6)
+
+
+def test_the_three_conventions_of_a_twist_are_one_motion() -> None:
+    """The same pose over time, driven by the object's, the sphere's and the world's twist, sampled densely."""
+    p = RollParams(radius=0.1, omega=(0.5, 0.8, 0.3), velocity=(0.02, -0.01, 0), duration=2.0, rate=200.0, **SHARP)
+    r = roll(BENT, p)
+    world, own = [], []
+    for u, v, _, _, psi in r.state:
+        frame = np.array(forms_of(BENT.jet(float(u), float(v)))[:3], float).T
+        turn = np.array([[np.cos(psi), -np.sin(psi), 0], [-np.sin(psi), -np.cos(psi), 0], [0, 0, -1]])
+        parts = np.array([p.omega, p.velocity])
+        world.append((-frame @ parts.T).T.ravel())
+        own.append((-turn @ parts.T).T.ravel())
+    conventions: list[tuple[Any, Any]] = [("world", world), ("sphere", own)]
+    for twist, rows in conventions:
+        again = roll(BENT, replace(p, twist=twist), Inputs(r.t, np.array(rows)))
+        # Straight between rows 5 ms apart: second differences of a twist that turns once in seconds.
+        np.testing.assert_allclose(again.state[-1], r.state[-1], atol=2e-5)
+
+
+def test_inputs_over_time_are_straight_between_their_rows() -> None:
+    inputs = Inputs(np.array([0.0, 2.0]), np.array([[0, 0, 0, 0, 0, 0], [2.0, 0, 0, 0, 0, 0]]))
+    assert inputs.at(0.5) == ((0.5, 0.0, 0.0), (0.0, 0.0, 0.0))
+    assert inputs.at(9.0)[0][0] == 2.0
+    r = roll(cylinder(2.0), RollParams(radius=0.5, start=(0, 0, 0, 0, 0), **SHARP), inputs)
+    assert r.t[-1] == 2.0
+    assert r.state[-1, 1] == pytest.approx(0.5 * 2.0, abs=1e-9)  # R_s times the integral of omega_x
+
+
+def test_a_run_ends_at_the_end_of_the_branch() -> None:
+    r = roll(straight_tube(), RollParams(radius=0.5, omega=(1.0, 0, 0), duration=60.0, **SHARP))
+    assert r.status is RollStatus.LEFT
+    assert r.state[-1, 1] == pytest.approx(pi, abs=1e-9)
+    assert "t = " in r.reason
+
+
+def narrowing() -> Any:
+    """A tube whose waist has a radius of curvature of about 0.4 along it."""
+    v = np.linspace(0, pi, 400)
+    return tube(np.stack([v, 0 * v, 0 * v], axis=1), np.stack([1 - 0.5 * np.sin(v) ** 8, 0 * v, 0 * v], axis=1))
+
+
+def test_a_run_ends_where_the_sphere_no_longer_fits() -> None:
+    r = roll(narrowing(), RollParams(radius=1.0, omega=(1.0, 0, 0), start=(0.1, 0.3, 0, 0, 0), duration=60.0, **SHARP))
+    assert r.status is RollStatus.TIGHT
+    assert r.margin[-1] == pytest.approx(0, abs=1e-6)
+
+
+def test_a_sphere_that_cannot_begin_is_told_what_to_do() -> None:
+    tunnel = straight_tube(2.0)
+    with pytest.raises(TiskelError, match="fits nowhere, a sphere of less than 2 somewhere"):
+        roll(tunnel, RollParams(side="inside", radius=2.5))
+    with pytest.raises(TiskelError, match=r"start at u = .*, v = "):
+        roll(narrowing(), RollParams(radius=1.0))
+    with pytest.raises(TiskelError, match=r"v = 4 lies outside the branch, where v is from 0 to 3.14159"):
+        roll(tunnel, RollParams(start=(0, 4.0, 0, 0, 0)))
+    with pytest.raises(TiskelError, match="radius of the sphere is missing"):
+        roll(Torus(5, 2))
+    with pytest.raises(TiskelError, match="needs a Fourier surface"):
+        roll(Torus(5, 2), RollParams(model="local", radius=0.1))
+
+
+def test_zero_inputs_leave_the_sphere_where_it_is_and_say_so() -> None:
+    r = roll(BENT, RollParams(omega=(0, 0, 0), duration=1.0))
+    np.testing.assert_array_equal(r.state[0], r.state[-1])
+    assert r.status is RollStatus.FINISHED
+    assert "stays" in r.warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("t", "hole", "said"),
+    [([0, 2, 1], False, "row 3 has t = 1 after 2"), ([0, 1, 1], False, "times must rise"), ([0, 1, 2], True, "row 2")],
+)
+def test_inputs_that_make_no_sense_name_their_row(t: list[float], hole: bool, said: str) -> None:
+    values = np.zeros((3, 6))
+    values[1, 2] = np.nan if hole else 0
+    with pytest.raises(TiskelError, match=said):
+        Inputs(np.array(t, float), values)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"radius": -1.0}, {"omega": (1, 2)}, {"omega": (1, 2, np.nan)}, {"velocity": (0, 0, 1.0)}, {"model": "own"},
+     {"duration": 0.0}, {"rate": np.inf}, {"start": (0, 0)}],
+)  # fmt: skip
+def test_settings_that_make_no_sense_are_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(TiskelError, match=next(iter(wrong))):
+        RollParams(**wrong)
+
+
+def test_the_run_starts_at_the_surface_point_nearest_to_a_place() -> None:
+    target = np.array(BENT.jet(0.8, 1.7).f, float)
+    outward = np.array(forms_of(BENT.jet(0.8, 1.7)).z, float)
+    r = roll(BENT, RollParams(radius=0.1, duration=0.1, start_at=tuple((target + 0.2 * outward).tolist())))
+    np.testing.assert_allclose(r.contact[0], target, atol=1e-9)
+
+
+def test_the_summary_holds_plain_finite_numbers() -> None:
+    import json
+
+    document = json.loads(json.dumps(roll(BENT, RollParams(duration=0.5)).as_dict(), allow_nan=False))
+    assert document["status"] == "finished"
+    assert document["least_margin"] > 0
+    assert document["least_determinant"] > 0

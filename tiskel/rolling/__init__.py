@@ -1,0 +1,1 @@
+"""A sphere, or another body, that rolls over a surface."""

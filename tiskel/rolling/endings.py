@@ -1,0 +1,72 @@
+"""What ends a run before its time: events for the solver, each with a status and a reason."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Numbers
+from tiskel.params import RollParams
+from tiskel.rolling.equations import margin
+from tiskel.rolling.models import RollingModel, tube_of
+from tiskel.rolling.trajectory import RollStatus
+from tiskel.slicing.fit import FittedSurface
+from tiskel.surfaces.forms import forms_of
+from tiskel.surfaces.jets import ParametricSurface
+
+SUNK, ROUGH = 0.05, 4.0  # points deeper in the sphere than so many of its radii, or RMS misfits, are met
+
+
+@dataclass(frozen=True)
+class Ending:
+    """A quantity of u and v that is positive while a run can go on."""
+
+    status: RollStatus
+    what: str
+    value: Callable[[float, float], float]
+    terminal = True
+    direction = -1.0
+
+    def __call__(self, t: float, y: Numbers) -> float:
+        return self.value(float(y[0]), float(y[1]))
+
+
+def endings(surface: ParametricSurface, model: RollingModel, params: RollParams, radius: float) -> list[Ending]:
+    """Return everything that can end a run over a surface."""
+    low, high = surface.v_range
+    found = [
+        Ending(
+            RollStatus.TIGHT, "lambda_min(K_o) + 1/R_s is 0: the surface bends as sharply as the sphere",
+            lambda u, v: float(margin(model.forms(u, v), radius)),
+        )
+    ]  # fmt: skip
+    if isfinite(low) or isfinite(high):
+        found.append(Ending(RollStatus.LEFT, "v reached the end of the branch", lambda u, v: min(v - low, high - v)))
+    tube = tube_of(surface)
+    if tube is not None:
+        found += [
+            Ending(RollStatus.CROSSED, "the surface folds where slices cross", lambda u, v: float(tube.spread(u, v))),
+            Ending(RollStatus.CLOSED, "the surface has no radius there", lambda u, v: float(tube.at(u, v)[1].R)),
+        ]
+    if params.meet and isinstance(surface, FittedSurface):
+        found.append(Ending(RollStatus.MET, "points away from the contact lie in it", Meeting(surface, params, radius)))
+    return found
+
+
+class Meeting:
+    """Whether the sphere meets a part of the cloud that is not about its contact."""
+
+    def __init__(self, surface: FittedSurface, params: RollParams, radius: float) -> None:
+        self.surface, self.sigma, self.radius = surface, params.sigma, radius
+        self.reach = max(radius - max(SUNK * radius, ROUGH * surface.error * surface.radius), 0.0)
+        self.tree = cKDTree(surface.cloud)
+
+    def __call__(self, u: float, v: float) -> float:
+        """Return -1 where points farther from the contact than the radius lie deep in the sphere, else 1."""
+        jet = self.surface.jet(u, v)
+        contact = np.array(jet.f)
+        near = self.tree.query_ball_point(contact + self.radius * np.array(forms_of(jet, self.sigma).z), self.reach)
+        away = np.linalg.norm(self.surface.cloud[near] - contact, axis=1) > self.radius
+        return -1.0 if away.any() else 1.0

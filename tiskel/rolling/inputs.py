@@ -1,0 +1,87 @@
+"""What drives the sphere: a twist that is constant, or given over time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tiskel.arrays import Numbers
+from tiskel.errors import TiskelError
+from tiskel.params import RollParams, Twist
+from tiskel.rolling.equations import Triple
+from tiskel.rolling.sphere import chart_of, rotation_of, turn_of
+from tiskel.surfaces.forms import Forms
+
+PAUSE = 10.0  # times the median step between rows: a longer one is told
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """omega and V over time, straight between the rows, held before the first and after the last.
+
+    Attributes
+    ----------
+    t : (k,) seconds, rising. values : (k, 6), omega in rad/s and V in lengths per second.
+    warnings : what a user should know.
+    """
+
+    t: Numbers
+    values: Numbers
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.values.shape != (len(self.t), 6) or len(self.t) == 0:
+            raise TiskelError(f"inputs need six values at every time, got {self.values.shape} at {len(self.t)} times")
+        if not (np.isfinite(self.t).all() and np.isfinite(self.values).all()):
+            row = int(np.flatnonzero(~np.isfinite(np.column_stack([self.t, self.values])).all(axis=1))[0])
+            raise TiskelError(f"inputs: row {row + 1} has a value missing; fill it or leave the row out")
+        back = np.flatnonzero(np.diff(self.t) <= 0)
+        if len(back):
+            row = int(back[0])
+            raise TiskelError(
+                f"inputs: times must rise, row {row + 2} has t = {self.t[row + 1]:g} after {self.t[row]:g}; sort them"
+            )
+
+    def at(self, t: float) -> tuple[Triple, Triple]:
+        """Return omega and V at a time."""
+        if len(self.t) == 1:
+            w = self.values[0].tolist()
+        else:
+            after = min(max(int(np.searchsorted(self.t, t)), 1), len(self.t) - 1)
+            step = self.t[after] - self.t[after - 1]
+            share = min(max((t - self.t[after - 1]) / step, 0.0), 1.0)
+            w = ((1 - share) * self.values[after - 1] + share * self.values[after]).tolist()
+        return (w[0], w[1], w[2]), (w[3], w[4], w[5])
+
+    @property
+    def longest_step(self) -> float:
+        """The longest step that a solver may take without missing a row."""
+        return float(2 * np.median(np.diff(self.t))) if len(self.t) > 1 else np.inf
+
+
+def constant(params: RollParams) -> Inputs:
+    """Return the inputs that the settings hold."""
+    return Inputs(np.zeros(1), np.array([[*params.omega, *params.velocity]], float))
+
+
+def pauses(t: Numbers) -> tuple[str, ...]:
+    """Return a warning for the longest pause between times (k,), where it is long."""
+    steps = np.diff(t)
+    if len(steps) < 2 or steps.max() <= PAUSE * np.median(steps):
+        return ()
+    row = int(steps.argmax())
+    return (f"inputs: no row between t = {t[row]:g} and {t[row + 1]:g}; values there are straight in between",)
+
+
+def in_contact_frame(twist: Twist, forms: Forms, q: Numbers, omega: Triple, velocity: Triple) -> tuple[Triple, Triple]:
+    """Return omega and V of the object relative to the sphere in the axes of the contact frame."""
+    if twist == "object":
+        return omega, velocity
+    frame = np.array(forms[:3]).T
+    axes = frame
+    if twist == "sphere":  # its own frame at the contact is F R3
+        axes = frame @ turn_of(float(chart_of(frame, rotation_of(np.asarray(q)))[2]))
+        turn = frame.T @ axes
+    else:
+        turn = frame.T
+    w, v = -turn @ np.array(omega), -turn @ np.array(velocity)
+    return (float(w[0]), float(w[1]), float(w[2])), (float(v[0]), float(v[1]), 0.0)

@@ -1,0 +1,90 @@
+"""The two models: on the surface as it is, and on one made straight along its skeleton (Wen et al. 2025)."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from tiskel.errors import TiskelError
+from tiskel.params import RollParams
+from tiskel.rolling.equations import Pair, Triple, local_object_rates, object_rates
+from tiskel.slicing.fit import FittedSurface
+from tiskel.surfaces.forms import Forms, forms_of
+from tiskel.surfaces.jets import Jet, ParametricSurface, Scalar
+from tiskel.surfaces.tube import Tube
+
+
+class RollingModel(Protocol):
+    """How the contact of a sphere moves over an object, and in which axes its orientation is kept."""
+
+    def forms(self, u: Scalar, v: Scalar) -> Forms:
+        """Return the frame that orientations refer to, with its forms."""
+
+    def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
+        """Return u_o' and v_o'."""
+
+
+@dataclass(frozen=True)
+class GlobalModel:
+    """The surface as it is."""
+
+    surface: ParametricSurface
+    sigma: float
+    radius: float
+
+    def forms(self, u: Scalar, v: Scalar) -> Forms:
+        return forms_of(self.surface.jet(u, v), self.sigma)
+
+    def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
+        return object_rates(forms, self.radius, omega, velocity)
+
+
+@dataclass(frozen=True)
+class LocalModel:
+    """A straight skeleton, and a radius that is as at the contact all along it."""
+
+    tube: Tube
+    sigma: float
+    radius: float
+
+    def forms(self, u: Scalar, v: Scalar) -> Forms:
+        return forms_of(straightened(self.tube, u, v), self.sigma)
+
+    def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
+        frame, r = self.tube.at(u, v)
+        return local_object_rates(r, frame.l, self.sigma, self.radius, omega, velocity)
+
+
+def straightened(tube: Tube, u: Scalar, v: Scalar) -> Jet:
+    """Return the jet of f = (alpha v, R cos u, R sin u) with R(u) and alpha = |p'| as they are at (u, v)."""
+    frame, r = tube.at(u, v)
+    c, s, zero = np.cos(u), np.sin(u), 0 * r.R
+    around, bent = (zero, r.u * c - r.R * s, r.u * s + r.R * c), r.uu - r.R
+    none = (zero, zero, zero)
+    return Jet(
+        (frame.l * v, r.R * c, r.R * s), around, (frame.l + zero, zero, zero),
+        (zero, bent * c - 2 * r.u * s, bent * s + 2 * r.u * c), none, none,
+    )  # fmt: skip
+
+
+def tube_of(surface: ParametricSurface) -> Tube | None:
+    """Return the Fourier surface that a surface is, None for others."""
+    return surface.tube if isinstance(surface, FittedSurface) else surface if isinstance(surface, Tube) else None
+
+
+def model_of(surface: ParametricSurface, params: RollParams, radius: float) -> RollingModel:
+    """Return the model that the settings name."""
+    tube = tube_of(surface)
+    if params.model == "local":
+        if tube is None:
+            raise TiskelError("the local model needs a Fourier surface around a skeleton; use the global one")
+        return LocalModel(tube, params.sigma, radius)
+    if params.normals == "pca":
+        from tiskel.rolling.printed import PrintedModel
+
+        if not isinstance(surface, FittedSurface):
+            raise TiskelError(
+                "normals of neighbours need a surface that was fitted to a cloud; use those of the surface"
+            )
+        return PrintedModel.of(surface, params, radius)
+    return GlobalModel(surface if tube is None else tube, params.sigma, radius)

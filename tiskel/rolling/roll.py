@@ -1,0 +1,147 @@
+"""The stage ``roll``: a surface and a twist in, the way of a sphere over the surface out."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from tiskel.arrays import Numbers
+from tiskel.errors import TiskelError
+from tiskel.params import RollParams
+from tiskel.rolling.endings import Ending, endings
+from tiskel.rolling.equations import margin
+from tiskel.rolling.inputs import Inputs, constant, in_contact_frame
+from tiskel.rolling.models import RollingModel, model_of, tube_of
+from tiskel.rolling.reading import path_lengths, read
+from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate
+from tiskel.rolling.trajectory import RollStatus, Trajectory
+from tiskel.slicing.fit import FittedSurface
+from tiskel.surfaces.forms import forms_of
+from tiskel.surfaces.jets import ParametricSurface
+from tiskel.surfaces.nearest import even_places, nearest_place
+from tiskel.surfaces.tube import V_STOP
+
+USUAL_RADIUS, USUAL_DURATION = 0.25, 10.0  # of the surface's median radius; seconds
+GRID = 72, 200  # places around and along where a sphere that does not fit is tried
+
+
+def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: Inputs | None = None) -> Trajectory:
+    """Roll a sphere over a surface (Wen et al. 2025, corrected; see :mod:`tiskel.rolling.equations`).
+
+    The state is integrated as u_o, v_o and a unit quaternion, so that the poles
+    of the sphere's chart are places like others. ``inputs`` over time stand in
+    for the constant ones of the settings. A run ends early, with a status and a
+    reason, where the contact leaves the branch, where the sphere no longer fits
+    or meets another part of the cloud, or where the surface folds. Raises
+    TiskelError where it cannot begin.
+    """
+    params, inputs = params or RollParams(), inputs or constant(params or RollParams())
+    radius = params.radius or USUAL_RADIUS * median_radius(surface)
+    model = model_of(surface, params, radius)
+    watched = endings(surface, model, params, radius)
+    start = _start(surface, model, params)
+    _check_start(surface, params, radius, start, watched)
+    solution = solve_ivp(
+        _Rate(model, params, inputs), (0.0, duration_of(params, inputs)), start, method="RK45", rtol=params.rtol,
+        atol=params.atol, max_step=inputs.longest_step, events=watched, dense_output=True,
+    )  # fmt: skip
+    stop = float(solution.t[-1])
+    t = np.append(np.arange(0, stop - 0.5 / params.rate, 1 / params.rate), stop)
+    status, reason = _ending(solution, watched)
+    lengths = path_lengths(model, radius, solution.sol, stop)
+    return Trajectory(
+        t, **read(surface, model, params.sigma, radius, solution.sol(t).T, params.start[4]), path_object=lengths[0],
+        path_sphere=lengths[1], status=status, reason=reason, evaluations=int(solution.nfev), radius=radius,
+        params=params, warnings=_warnings(inputs),
+    )  # fmt: skip
+
+
+def duration_of(params: RollParams, inputs: Inputs) -> float:
+    """Return the duration asked for, else that of the inputs, else the usual one."""
+    if params.duration is not None:
+        return params.duration
+    return float(inputs.t[-1]) if len(inputs.t) > 1 and inputs.t[-1] > 0 else USUAL_DURATION
+
+
+def median_radius(surface: ParametricSurface) -> float:
+    """Return the median radius of a surface around a skeleton.
+
+    Raises TiskelError for others: the sphere's radius has to be given.
+    """
+    if isinstance(surface, FittedSurface):
+        return surface.radius
+    tube = tube_of(surface)
+    if tube is None:
+        raise TiskelError("the radius of the sphere is missing; only surfaces around a skeleton suggest one")
+    return float(np.median(tube.series.along(np.linspace(0, V_STOP, GRID[1]))[:, 0, 0]))
+
+
+@dataclass(frozen=True)
+class _Rate:
+    """The right-hand side: derivatives of u_o, v_o and the quaternion."""
+
+    model: RollingModel
+    params: RollParams
+    inputs: Inputs
+
+    def __call__(self, t: float, y: Numbers) -> tuple[float, ...]:
+        u, v, *q = y.tolist()
+        forms = self.model.forms(u, v)
+        omega, velocity = in_contact_frame(self.params.twist, forms, y[2:], *self.inputs.at(t))
+        moving = self.model.rates(u, v, forms, omega, velocity)
+        # The sphere turns by -F omega in fixed axes.
+        turning = [-(omega[0] * forms.x[i] + omega[1] * forms.y[i] + omega[2] * forms.z[i]) for i in range(3)]
+        return *moving, *quaternion_rate(turning, q)
+
+
+def _start(surface: ParametricSurface, model: RollingModel, params: RollParams) -> Numbers:
+    """Return u_o, v_o and the quaternion to begin with."""
+    u, v, u_s, v_s, psi = params.start
+    if params.start_at is not None:
+        u, v = nearest_place(surface, np.array(params.start_at))
+    low, high = surface.v_range
+    if not low <= v <= high:
+        raise TiskelError(f"the start v = {v:g} lies outside the branch, where v is from {low:g} to {high:.6g}")
+    frame = np.array(model.forms(u, v)[:3], float).T
+    return np.array([u, v, *quaternion_of(orientation(frame, u_s, v_s, psi))])
+
+
+def _check_start(
+    surface: ParametricSurface, params: RollParams, radius: float, start: Numbers, watched: list[Ending]
+) -> None:
+    """Raise where the sphere cannot stand at the start."""
+    for ending in watched:
+        if ending.status is not RollStatus.LEFT and not ending(0.0, start) > 0:
+            told = (
+                f"a sphere of radius {radius:.4g} cannot stand {params.side} at u = {start[0]:.4g}, v = {start[1]:.4g}"
+            )
+            advice = _elsewhere(surface, params, radius) if ending.status is RollStatus.TIGHT else "start elsewhere"
+            raise TiskelError(f"{told}: {ending.what}; {advice}")
+
+
+def _elsewhere(surface: ParametricSurface, params: RollParams, radius: float) -> str:
+    """Return where a sphere that does not fit at the start would fit, or which sphere would."""
+    u, v = even_places(surface, *GRID)
+    free = margin(forms_of(surface.jet(u, v), params.sigma), radius)
+    if not (free > 0).any():
+        largest = 1 / max(float(1 / radius - free.max()), np.finfo(float).tiny)
+        return f"it fits nowhere, a sphere of less than {largest:.4g} somewhere"
+    best = np.unravel_index(int(np.argmax(free)), free.shape)
+    return f"start at u = {u[best]:.4g}, v = {v[best]:.4g}, or take a smaller one"
+
+
+def _ending(solution: Any, watched: list[Ending]) -> tuple[RollStatus, str]:
+    """Return why the solver stopped, in one word and in a sentence."""
+    stop = float(solution.t[-1])
+    if solution.status == 0:
+        return RollStatus.FINISHED, f"all of {stop:g} s"
+    for ending, times in zip(watched, solution.t_events or (), strict=False):
+        if solution.status == 1 and len(times):
+            return ending.status, f"{ending.what}, at t = {times[-1]:.4g} s"
+    return RollStatus.STUCK, f"{solution.message}, at t = {stop:.4g} s"
+
+
+def _warnings(inputs: Inputs) -> tuple[str, ...]:
+    still = () if inputs.values.any() else ("the inputs are zero: the sphere stays where it is",)
+    return (*inputs.warnings, *still)

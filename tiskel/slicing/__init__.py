@@ -1,0 +1,1 @@
+"""Slices across a skeleton, and the Fourier surface through them."""

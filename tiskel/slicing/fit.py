@@ -1,0 +1,326 @@
+"""The stage ``slice``: a skeleton and its cloud in, a Fourier surface for every branch out."""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
+from tiskel.errors import TiskelError
+from tiskel.io.curves import Curve
+from tiskel.params import SurfaceParams
+from tiskel.skeleton import Skeleton
+from tiskel.slicing.axis import evened, fit_axis
+from tiskel.slicing.field import fit_field
+from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
+from tiskel.slicing.rings import Ring, around, cut, frames_along, spacing_of
+from tiskel.slicing.sections import Case, Section, fit_section, left_out_error
+from tiskel.surfaces.jets import Jet, Scalar
+from tiskel.surfaces.strips import Strip, fit_strip
+from tiskel.surfaces.tube import V_STOP, Tube
+
+LEAST_SLICES = 4  # fewer do not determine how a surface changes along its curve
+SLAB = 1.5  # spacings that a slab is thick to each side, at least
+REACH = 3.0  # radii of the curve's nearest points: how far a section looks where points have no nodes
+INTERVALS = 4, 200  # of the splines; one for every two slices
+RECENTRINGS, CENTRE_ORDER = 2, 2  # rounds, and the order of the series whose first terms say where the middle is
+BRIDGED = 0.1  # weight of the old place of the curve where a section says nothing, and at its ends
+FARTHEST = 0.5  # radii that the curve moves in a round
+JUDGED = 40  # sections that choose the order
+MISSING = 0.3  # share of rejected slices that is worth a warning
+
+
+@dataclass(frozen=True)
+class FittedSurface:
+    """A Fourier surface along one path of a skeleton; lengths in the input's unit.
+
+    Attributes
+    ----------
+    tube : the surface itself. name : of the branch. nodes : (k,) of the path; a closed one repeats its first.
+    frame : "m", "normal" or "rotation-minimising"; note : why it is not the one asked for.
+    sections : every slice, fitted or rejected; trimmed : the cases of those beyond both ends of the surface.
+    rows : (p,) rows in the cloud that the surface was fitted to; error : RMS of their misfit over the mean radius.
+    radius : median of the mean radii. length : of the skeleton curve. cloud : (n, 3), all of it.
+    warnings : what a user should know.
+    """
+
+    tube: Tube
+    name: str
+    nodes: Indices
+    frame: str
+    sections: tuple[Section, ...]
+    trimmed: dict[str, int]
+    rows: Indices
+    error: float
+    radius: float
+    length: float
+    cloud: Points
+    note: str
+    warnings: tuple[str, ...]
+
+    @property
+    def v_range(self) -> tuple[float, float]:
+        return self.tube.v_range
+
+    @property
+    def periods(self) -> tuple[float | None, float | None]:
+        return self.tube.periods
+
+    @property
+    def order(self) -> int:
+        """The order of the Fourier series."""
+        return int(self.tube.series.coefficients.shape[1]) // 2
+
+    def jet(self, u: Scalar, v: Scalar) -> Jet:
+        return self.tube.jet(u, v)
+
+    def cases(self) -> dict[str, int]:
+        """Return how many slices there are of each case."""
+        return dict(Counter(section.case.value for section in self.sections) + Counter(self.trimmed))
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """The surfaces of a skeleton, by place or in order; ``rejected`` says of the other branches why not."""
+
+    surfaces: tuple[FittedSurface, ...]
+    rejected: dict[str, str]
+    cloud: Points
+
+    def __len__(self) -> int:
+        return len(self.surfaces)
+
+    def __getitem__(self, place: int) -> FittedSurface:
+        return self.surfaces[place]
+
+    def __iter__(self) -> Iterator[FittedSurface]:
+        return iter(self.surfaces)
+
+    def named(self, name: str | None) -> FittedSurface:
+        """Return the surface of a branch, without a name the longest."""
+        if name is None:
+            return max(self.surfaces, key=lambda s: s.length)
+        known = [s.name for s in self.surfaces]
+        if name not in known:
+            why = f": {self.rejected[name]}" if name in self.rejected else ""
+            raise TiskelError(f"there is no surface of branch {name}{why}; there are {', '.join(known)}")
+        return self.surfaces[known.index(name)]
+
+
+class _Rejected(Exception):
+    """A branch without a surface, and why."""
+
+
+def fit_surface(
+    skeleton: Skeleton | Curve, params: SurfaceParams | None = None, cloud: Points | None = None
+) -> Surfaces:
+    """Fit a Fourier surface around every branch of a skeleton (Wen et al. 2025; see :mod:`tiskel.surfaces.tube`).
+
+    Of a tiskel skeleton every slice sees the points of its branch only; of a
+    curve from elsewhere, with its ``cloud`` (n, 3), what is around it. Raises
+    TiskelError where no branch has a surface, with the reason of each.
+    """
+    params = params or SurfaceParams()
+    if isinstance(skeleton, Skeleton):
+        every, owner = skeleton.cloud if cloud is None else as_points(cloud), skeleton.node_of_point
+        owned = len(owner) == len(every)
+    else:
+        if cloud is None:
+            raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
+        every, owned = as_points(cloud), False
+    surfaces, rejected = [], {}
+    for path in paths_of(skeleton.nodes, skeleton.edges, params.branch):
+        near = np.flatnonzero(np.isin(owner, path.nodes)) if owned else np.arange(len(every))
+        try:
+            surfaces.append(_fitted(path, skeleton.nodes, every, near.astype(np.int32), owned, params))
+        except _Rejected as reason:
+            rejected[path.name] = str(reason)
+    if not surfaces:
+        reasons = "; ".join(f"branch {name}: {reason}" for name, reason in rejected.items())
+        raise TiskelError(f"no branch can be sliced: {reasons}")
+    return Surfaces(tuple(surfaces), rejected, every)
+
+
+@dataclass(frozen=True)
+class _Cutter:
+    """What all slices of a branch share: its points, how thick slices are, and how thick the body."""
+
+    points: Points
+    owned: bool
+    half: float
+    radius: float
+    params: SurfaceParams
+
+    def field(self, axis: Strip) -> tuple[Strip, str, str]:
+        return fit_field(axis, self.params.m, self.radius, axis.intervals)
+
+    def rings(self, axis: Strip, field: Strip, places: Numbers) -> list[Ring]:
+        """Return the ring of every slice."""
+        reach = np.full(len(places), np.inf)
+        if not self.owned:
+            reach = REACH * np.asarray(cKDTree(self.points).query(axis.along(places)[:, 0])[0]) + self.half
+        found = cut(self.points, axis, field, places, self.half, reach)
+        every, sizes = np.concatenate(found), [len(rows) for rows in found]
+        all_at_once = around(self.points, every, axis, field, np.repeat(places, sizes))
+        parts = np.cumsum(sizes)[:-1]
+        columns = (np.split(column, parts) for column in (every, all_at_once.u, all_at_once.v, all_at_once.r))
+        return [Ring(*ring) for ring in zip(*columns, strict=True)]
+
+
+def _fitted(
+    path: Path, nodes: Points, cloud: Points, near: Indices, owned: bool, params: SurfaceParams
+) -> FittedSurface:
+    points, interval = np.ascontiguousarray(cloud[near]), params.interval * diagonal(cloud)
+    count = _slices(path, nodes, interval)
+    if len(near) < params.least_points:
+        raise _Rejected(f"{len(near)} points lie about it")
+    radius = float(np.median(cKDTree(_dense(nodes[path.nodes], interval)).query(points)[0])) if owned else interval
+    coarse = min(max(len(path.nodes) // 2, INTERVALS[0]), max(count // 2, INTERVALS[0]))
+    axis = fit_axis(nodes[path.nodes], np.ones(len(path.nodes)), radius, coarse, closed=path.closed)
+    cutter = _Cutter(points, owned, max(interval / 2, SLAB * spacing_of(points)), radius, params)
+    for _ in range(RECENTRINGS if params.recentre else 0):
+        axis, cutter = _recentred(axis, cutter, count)
+    trimmed: Counter[str] = Counter()
+    while True:
+        intervals = int(np.clip(count // 2, *INTERVALS))
+        axis = evened(axis, intervals) if axis.intervals != intervals else axis
+        field, frame, note = cutter.field(axis)
+        rings = cutter.rings(axis, field, places_of(count))
+        sections = _sections(rings, places_of(count), params)
+        first, last = _span(sections)
+        if path.closed or last - first == count:
+            break
+        trimmed += Counter(section.case.value for section in (*sections[:first], *sections[last:]))
+        axis, count = evened(axis, intervals, first / count * V_STOP, last / count * V_STOP), last - first
+    tube = Tube(axis, field, _joined(sections, intervals, path.closed))
+    rows, error = _misfit(tube, rings, sections)
+    fitted = FittedSurface(
+        tube, path.name, path.nodes, frame, sections, dict(trimmed), near[rows], error,
+        float(np.median(tube.series.along(places_of(count))[:, 0, 0])), tube.length(), cloud, note, (),
+    )  # fmt: skip
+    return replace(fitted, warnings=_doubts(fitted))
+
+
+def places_of(count: int) -> Numbers:
+    """Return (count,) the places of slices: the middles of as many even parts of the curve."""
+    return np.asarray((np.arange(count) + 0.5) / count * V_STOP)
+
+
+def _span(sections: tuple[Section, ...]) -> tuple[int, int]:
+    """Return the first fitted slice and the one after the last: beyond them nothing says where the surface is."""
+    fitted = np.flatnonzero([section.case is Case.FITTED for section in sections])
+    if len(fitted) < LEAST_SLICES:
+        raise _Rejected(_why(sections))
+    return int(fitted[0]), int(fitted[-1]) + 1
+
+
+def _slices(path: Path, nodes: Points, interval: float) -> int:
+    if len(path.nodes) < LEAST_NODES:
+        raise _Rejected(f"it has {len(path.nodes)} node{'s' * (len(path.nodes) > 1)}, a curve needs {LEAST_NODES}")
+    length = float(np.linalg.norm(np.diff(nodes[path.nodes], axis=0), axis=1).sum())
+    count = round(length / interval)
+    if count < LEAST_SLICES:
+        raise _Rejected(f"it is {length:.4g} long, too short for {LEAST_SLICES} slices {interval:.4g} apart")
+    return count
+
+
+def _dense(polyline: Points, step: float) -> Points:
+    """Return places along a polyline no further apart than a step."""
+    parts = [polyline[-1:]]
+    for a, b in zip(polyline[:-1], polyline[1:], strict=True):
+        share = np.linspace(0, 1, 1 + int(np.ceil(np.linalg.norm(b - a) / step)), endpoint=False)
+        parts.append(a + share[:, None] * (b - a))
+    return np.concatenate(parts)
+
+
+def _recentred(axis: Strip, cutter: _Cutter, count: int) -> tuple[Strip, _Cutter]:
+    """Return the curve through the middles of the sections, and the cutter with their median radius."""
+    field, places = cutter.field(axis)[0], places_of(count)
+    loose = replace(cutter.params, uneven=np.inf)
+    rings = cutter.rings(axis, field, places)
+    sections = [fit_section(v, ring, CENTRE_ORDER, loose) for v, ring in zip(places, rings, strict=True)]
+    frame = frames_along(axis, field, places)
+    fitted = np.array([len(section.series) > 0 for section in sections])
+    if fitted.sum() < LEAST_SLICES:
+        raise _Rejected(_why(sections))
+    terms = np.array([section.series[:3] if len(section.series) else np.zeros(3) for section in sections])
+    radius = float(np.median(terms[fitted, 0]))
+    move = terms[:, 2] * np.array(frame.y) + terms[:, 1] * np.array(frame.z)
+    move *= np.minimum(1, FARTHEST * radius / np.maximum(np.linalg.norm(move, axis=0), np.finfo(float).tiny))
+    centres, weights, v = (np.array(frame.p) + move).T, np.where(fitted, 1.0, BRIDGED), places
+    if not axis.periodic:  # the curve keeps its ends
+        v = np.concatenate([[0.0], v, [V_STOP]])
+        centres = np.concatenate([axis.along(v[:1])[:, 0], centres, axis.along(v[-1:])[:, 0]])
+        weights = np.concatenate([[BRIDGED], weights, [BRIDGED]])
+    intervals = int(np.clip(count // 2, *INTERVALS))
+    return fit_axis(centres, weights, radius, intervals, closed=axis.periodic, v=v), replace(cutter, radius=radius)
+
+
+def _sections(rings: list[Ring], places: Numbers, params: SurfaceParams) -> tuple[Section, ...]:
+    """Return the sections, all of one order, which cross-validation chooses, or each of its own, as published."""
+    pairs = list(zip(places.tolist(), rings, strict=True))
+    if params.order_rule == "published":
+        return tuple(_published(v, ring, params) for v, ring in pairs)
+    tried = [fit_section(v, ring, params.least_order, params) for v, ring in pairs]
+    good = [pair for pair, section in zip(pairs, tried, strict=True) if section.case is Case.FITTED]
+    judged = good[:: -(-len(good) // JUDGED) or 1]
+    order, least = params.least_order, _judged(judged, params.least_order)
+    while judged and order < params.most_order and (error := _judged(judged, order + 1)) < least:
+        order, least = order + 1, error
+    return tuple(fit_section(v, ring, order, params) for v, ring in pairs)
+
+
+def _judged(pairs: list[tuple[float, Ring]], order: int) -> float:
+    enough = [pair for pair in pairs if len(pair[1].u) > 2 * order + 5]
+    return float(np.mean([left_out_error(v, ring, order) for v, ring in enough])) if enough else np.inf
+
+
+def _published(v: float, ring: Ring, params: SurfaceParams) -> Section:
+    """Return the section of the lowest order whose RMS error is small enough, or of the highest."""
+    for order in range(params.least_order, params.most_order + 1):
+        section = fit_section(v, ring, order, params)
+        if section.case is not Case.FITTED or section.error * section.series[0] < params.fit_error:
+            break
+    return section
+
+
+def _joined(sections: tuple[Section, ...], intervals: int, closed: bool) -> Strip:
+    """Return the coefficients as functions of v, over rejected slices as smooth as elsewhere."""
+    good = [section for section in sections if section.case is Case.FITTED]
+    series = np.zeros((len(good), max(len(section.series) for section in good)))
+    for row, section in zip(series, good, strict=True):
+        row[: len(section.series)] = section.series
+    v, weights = np.array([section.v for section in good]), np.array([float(section.points) for section in good])
+    return fit_strip(v, series, weights / weights.mean(), intervals, V_STOP, periodic=closed)
+
+
+def _why(sections: "list[Section] | tuple[Section, ...]") -> str:
+    cases = Counter(section.case.value for section in sections if section.case is not Case.FITTED)
+    told = ", ".join(f"{count} {case}" for case, count in cases.items())
+    return f"fewer than {LEAST_SLICES} of its {len(sections)} slices can be fitted ({told})"
+
+
+def _misfit(tube: Tube, rings: list[Ring], sections: tuple[Section, ...]) -> tuple[Indices, float]:
+    """Return the rows of all fitted rings, and the RMS of what they are off the surface, over the mean radius."""
+    good = [ring for ring, section in zip(rings, sections, strict=True) if section.case is Case.FITTED]
+    rows, first = np.unique(np.concatenate([ring.rows for ring in good]), return_index=True)
+    u, v, r = (np.concatenate([getattr(ring, name) for ring in good])[first] for name in ("u", "v", "r"))
+    fitted = tube.at(u, v)[1].R
+    return rows.astype(np.int32), float(np.sqrt(np.mean((r - fitted) ** 2)) / fitted.mean())
+
+
+def _doubts(surface: FittedSurface) -> tuple[str, ...]:
+    """Return warnings about a fitted surface."""
+    sections = surface.sections
+    lost = sum(section.case is not Case.FITTED for section in sections)
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 36), np.linspace(0, V_STOP, 2 * len(sections)))
+    crossing, thin = surface.tube.spread(u, v), surface.tube.at(u, v)[1].R
+    told = {
+        f"{lost} of {len(sections)} slices were bridged: {surface.cases()}": lost > MISSING * len(sections),
+        "slices cross where the curve bends sharper than the body is thick; the surface folds there": crossing.min()
+        <= 0,
+        "the radius is not positive everywhere; the surface folds there": thin.min() <= 0,
+    }
+    return tuple(f"branch {surface.name}: {line}" for line, holds in told.items() if holds)

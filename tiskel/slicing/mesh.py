@@ -1,0 +1,113 @@
+"""The fitted surface as a triangle mesh, its distance to the cloud, and what its slices measure."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Indices, Numbers, Points
+from tiskel.quality.ellipse import fit_ellipse
+from tiskel.slicing.fit import FittedSurface
+from tiskel.slicing.sections import Section
+from tiskel.surfaces.strips import Strip
+from tiskel.surfaces.tube import V_STOP, Tube, radius_of
+
+AROUND, PER_SLICE = 96, 3  # vertices around the curve, and rows of them per slice
+SAMPLES = 512  # of one section, for its area and perimeter
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """vertices (p, 3), triangles (q, 3) int32, counter-clockwise seen from outside."""
+
+    vertices: Points
+    triangles: Indices
+
+
+def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
+    """Return the surface as triangles, closed around u, along v if the curve is a loop; caps close its ends."""
+    closed = surface.tube.closed
+    rows = PER_SLICE * len(surface.sections)
+    u = np.arange(AROUND) / AROUND * 2 * np.pi
+    v = np.linspace(0, V_STOP, rows, endpoint=not closed)
+    grid = np.stack(surface.jet(*np.meshgrid(u, v)).f, axis=-1)
+    number = np.arange(rows * AROUND, dtype=np.int32).reshape(rows, AROUND)
+    after = np.roll(number, -1, axis=0) if closed else number[1:]
+    here = number[: len(after)]
+    corners = [here, np.roll(here, -1, axis=1), after, np.roll(after, -1, axis=1)]
+    a, b, c, d = (corner.ravel() for corner in corners)
+    triangles = [np.stack([a, b, d], axis=1), np.stack([a, d, c], axis=1)]
+    vertices = [grid.reshape(-1, 3)]
+    if caps and not closed:
+        vertices.append(surface.tube.curve(np.array([0.0, V_STOP])))
+        for row, tip in ((number[0, ::-1], rows * AROUND), (number[-1], rows * AROUND + 1)):
+            triangles.append(np.stack([row, np.roll(row, -1), np.full(AROUND, tip)], axis=1))
+    return Mesh(np.concatenate(vertices), np.concatenate(triangles).astype(np.int32))
+
+
+def joined_mesh(meshes: list[Mesh]) -> Mesh:
+    """Return several meshes as one."""
+    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    triangles = [mesh.triangles + offset for mesh, offset in zip(meshes, offsets[:-1], strict=True)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles).astype(np.int32))
+
+
+def distances_to_mesh(points: Points, mesh: Mesh) -> Numbers:
+    """Return (p,) the distance of each point to the triangles around the vertex nearest to it."""
+    nearest = cKDTree(mesh.vertices).query(points)[1]
+    order = np.argsort(mesh.triangles.ravel(), kind="stable")
+    starts = np.searchsorted(mesh.triangles.ravel()[order], np.arange(len(mesh.vertices) + 1))
+    best = np.full(len(points), np.inf)
+    sizes = (starts[1:] - starts[:-1])[nearest]
+    for k in range(int(sizes.max(initial=0))):
+        rows = np.flatnonzero(sizes > k)
+        corners = mesh.vertices[mesh.triangles[order[starts[nearest[rows]] + k] // 3]]
+        best[rows] = np.minimum(best[rows], _to_triangles(points[rows], corners))
+    return best
+
+
+def _to_triangles(points: Points, corners: Numbers) -> Numbers:
+    """Return (k,) the distances of points to triangles (k, 3, 3), one each."""
+    sides = np.roll(corners, -1, axis=1) - corners
+    offset = points[:, None] - corners
+    square = np.maximum((sides**2).sum(axis=2), np.finfo(float).tiny)
+    share = np.clip((offset * sides).sum(axis=2) / square, 0, 1)
+    to_sides = np.linalg.norm(offset - share[..., None] * sides, axis=2).min(axis=1)
+    normal = np.cross(sides[:, 0], sides[:, 1])
+    inside = ((np.cross(sides, offset) * normal[:, None]).sum(axis=2) >= 0).all(axis=1)
+    height = np.abs((offset[:, 0] * normal).sum(axis=1))
+    height /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
+    return np.asarray(np.where(inside, height, to_sides))
+
+
+def mesh_report(surface: FittedSurface) -> dict[str, float]:
+    """Return mean, 95 % and maximum of the distance from the points that were fitted to the surface."""
+    off = distances_to_mesh(surface.cloud[surface.rows], surface_mesh(surface))
+    return {"mean": float(off.mean()), "p95": float(np.quantile(off, 0.95)), "max": float(off.max())}
+
+
+def slice_table(surface: FittedSurface) -> list[dict[str, object]]:
+    """Return a row per slice: place, case, points, error; and of the surface there area, perimeter, radius, ellipse."""
+    return [_row(surface.name, number, surface.tube, section) for number, section in enumerate(surface.sections)]
+
+
+def _row(branch: str, number: int, tube: Tube, section: Section) -> dict[str, object]:
+    x, y, z = (float(c) for c in tube.curve(np.array([section.v]))[0])
+    area, perimeter, longer, shorter = measures(tube.series, section.v)
+    return {
+        "branch": branch, "slice": number, "v": section.v, "x": x, "y": y, "z": z, "case": section.case.value,
+        "points": section.points, "gap": section.gap, "error": None if np.isnan(section.error) else section.error,
+        "area": area, "perimeter": perimeter, "equivalent_radius": float(np.sqrt(area / np.pi)),
+        "major": longer, "minor": shorter,
+    }  # fmt: skip
+
+
+def measures(series: Strip, v: float) -> tuple[float, float, float | None, float | None]:
+    """Return area and perimeter of the section at v, and the semi-axes of its ellipse (None where none fits)."""
+    u = np.arange(SAMPLES) / SAMPLES * 2 * np.pi
+    r = radius_of([list(row) for row in series.at(v)], np.exp(1j * u))
+    area = float((r.R**2).mean() * np.pi)
+    perimeter = float(np.hypot(r.R, r.u).mean() * 2 * np.pi)
+    ellipse = fit_ellipse(np.stack([r.R * np.cos(u), r.R * np.sin(u)], axis=1))
+    axes = (None, None) if ellipse is None else (float(ellipse.axes[0]), float(ellipse.axes[1]))
+    return area, perimeter, *axes

@@ -1,0 +1,68 @@
+"""The paths of a curve that surfaces are fitted along: its branches, or the longest way through it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components, dijkstra
+
+from tiskel import graph
+from tiskel.arrays import Indices, Points
+from tiskel.errors import TiskelError
+
+LEAST_NODES = 3  # fewer have no direction to follow
+
+
+@dataclass(frozen=True)
+class Path:
+    """Nodes (k,) in order; a closed path repeats its first node."""
+
+    name: str
+    nodes: Indices
+
+    @property
+    def closed(self) -> bool:
+        return len(self.nodes) > 1 and bool(self.nodes[0] == self.nodes[-1])
+
+
+def paths_of(nodes: Points, edges: Indices, branch: str) -> tuple[Path, ...]:
+    """Return the paths that a choice of branch names: "all", "longest" or a number.
+
+    A curve without edges is taken as one path in the order of its nodes. Raises
+    TiskelError where there is no such branch.
+    """
+    if len(nodes) == 0:
+        raise TiskelError("the skeleton has no nodes; run tiskel skeleton again")
+    if len(edges) == 0 and len(nodes) > 1:
+        links = np.arange(len(nodes), dtype=np.int32)
+        edges = np.stack([links[:-1], links[1:]], axis=1)
+    every = graph.branches(len(nodes), edges)
+    if branch == "longest":
+        return (Path("longest", longest_path(nodes, edges)),)
+    if branch == "all":
+        return tuple(Path(str(number), path) for number, path in enumerate(every))
+    if int(branch) >= len(every):
+        raise TiskelError(f"there is no branch {branch}; the skeleton has {len(every)}, from 0 to {len(every) - 1}")
+    return (Path(branch, every[int(branch)]),)
+
+
+def longest_path(nodes: Points, edges: Indices) -> Indices:
+    """Return the longest of the shortest ways between any two ends (k,); of loops alone, the longest branch."""
+    count = len(nodes)
+    ends = np.flatnonzero(graph.degrees(count, edges) == 1)
+    if len(ends) < 2:
+        return max(graph.branches(count, edges), key=lambda path: _length(nodes, path))
+    lengths = np.maximum(graph.edge_lengths(nodes, edges), np.finfo(float).tiny)
+    linked = sparse.coo_array((lengths, (edges[:, 0], edges[:, 1])), shape=(count, count)).tocsr()
+    part = connected_components(linked, directed=False)[1]
+    distance, before = dijkstra(linked, directed=False, indices=ends, return_predecessors=True)
+    far = np.where(part[ends][:, None] == part[ends][None, :], distance[:, ends], -1.0)
+    start, stop = np.unravel_index(int(far.argmax()), far.shape)
+    path = [int(ends[stop])]
+    while path[-1] != ends[start]:
+        path.append(int(before[start, path[-1]]))
+    return np.array(path[::-1], np.int32)
+
+
+def _length(nodes: Points, path: Indices) -> float:
+    return float(np.linalg.norm(np.diff(nodes[path], axis=0), axis=1).sum())

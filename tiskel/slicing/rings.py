@@ -1,0 +1,102 @@
+"""The ring of points that a slice sees around the skeleton curve; other limbs in its plane are left out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Indices, Numbers, Points
+from tiskel.surfaces.strips import Strip
+from tiskel.surfaces.tube import Moving, moving_frame
+
+SECTORS = 36  # directions that a section is looked at in
+LINKED = 4.0  # spacings between neighbours of one ring
+ALIKE = 0.5, 1.6  # median radius of a part of the ring, in that of its largest part
+PROJECTIONS = 3  # Newton steps to the plane through a point
+
+
+@dataclass(frozen=True)
+class Ring:
+    """The points of one section: rows (k,) in the cloud, angle u, place v on the curve and distance r from it."""
+
+    rows: Indices
+    u: Numbers
+    v: Numbers
+    r: Numbers
+
+
+def frames_along(axis: Strip, field: Strip, v: Numbers) -> Moving:
+    """Return the moving frame at places (k,); its vectors are tuples of arrays (k,)."""
+    p, m = (list(map(tuple, np.moveaxis(strip.along(v), 0, 2))) for strip in (axis, field))
+    return moving_frame(p, m)
+
+
+def cut(points: Points, axis: Strip, field: Strip, v: Numbers, half: float, reach: Numbers) -> list[Indices]:
+    """Return for each slice at v (s,) the rows of the ring of points around the curve, and no others."""
+    from tiskel.kernels.sections import section_counts, section_points
+
+    frame = frames_along(axis, field, v)
+    centres, x, y, z = (np.ascontiguousarray(np.transpose(part)) for part in (frame.p, frame.x, frame.y, frame.z))
+    counts = np.empty(len(v), np.int32)
+    section_counts(points, centres, x, half, reach, counts)
+    offsets = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+    rows, (across, up, ahead) = np.empty(offsets[-1], np.int32), np.empty((3, offsets[-1]))
+    section_points(points, centres, x, y, z, half, reach, offsets[:-1], rows, across, up, ahead)
+    link = LINKED * spacing_of(points)
+    found = []
+    for start, stop in zip(offsets[:-1], offsets[1:], strict=True):
+        part = slice(start, stop)
+        found.append(rows[part][ring_of(np.stack([across[part], up[part]], axis=1), link)])
+    return found
+
+
+def spacing_of(points: Points) -> float:
+    """Return the median distance to the nearest other point."""
+    return float(np.median(cKDTree(points).query(points, k=2)[0][:, 1])) if len(points) > 1 else 0.0
+
+
+def ring_of(plane: Numbers, link: float) -> Indices:
+    """Return which points (k, 2) of a section, its centre at the origin, are the ring around the centre.
+
+    Of the parts that hang together, the one that is nearest in most directions,
+    and those as far away that are nearest where it has a gap.
+    """
+    if len(plane) == 0:
+        return np.zeros(0, np.int32)
+    pairs = cKDTree(plane).query_pairs(link, output_type="ndarray")
+    linked = sparse.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(plane), len(plane)))
+    part = connected_components(linked, directed=False)[1]
+    r, u = np.linalg.norm(plane, axis=1), np.arctan2(plane[:, 1], plane[:, 0])
+    sector = np.floor((u + np.pi) / (2 * np.pi) * SECTORS).astype(int) % SECTORS
+    order = np.lexsort((r, sector))
+    nearest = part[order[np.unique(sector[order], return_index=True)[1]]]
+    seen = np.bincount(nearest, minlength=part.max() + 1)
+    main = int(seen.argmax())
+    typical = float(np.median(r[part == main]))
+    low, high = ALIKE
+    ring = [
+        number
+        for number in np.flatnonzero(seen)
+        if number == main or low * typical <= np.median(r[part == number]) <= high * typical
+    ]
+    return np.flatnonzero(np.isin(part, ring)).astype(np.int32)
+
+
+def around(points: Points, rows: Indices, axis: Strip, field: Strip, start: Numbers) -> Ring:
+    """Return where some points are about the curve: in the planes across it that go through them.
+
+    ``start`` (k,) is near their v.
+    """
+    v, own = start.copy(), points[rows]
+    for _ in range(PROJECTIONS):
+        p = axis.along(v)
+        offset = own - p[:, 0]
+        ahead, slope = (offset * p[:, 1]).sum(axis=1), (offset * p[:, 2]).sum(axis=1) - (p[:, 1] ** 2).sum(axis=1)
+        limit = 0.1 * axis.step * axis.intervals
+        v = v - np.clip(ahead / np.where(slope < 0, slope, -np.inf), -limit, limit)
+    frame = frames_along(axis, field, v)
+    across, up = ((own.T - np.array(frame.p)) * np.array(side) for side in (frame.y, frame.z))
+    y, z = across.sum(axis=0), up.sum(axis=0)
+    return Ring(rows, np.arctan2(z, y), v, np.hypot(y, z))

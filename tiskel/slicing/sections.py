@@ -1,0 +1,107 @@
+"""The Fourier series of one section, and why a section has none."""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from tiskel.arrays import Numbers
+from tiskel.params import SurfaceParams
+from tiskel.slicing.rings import Ring
+
+RIDGE = 1e-7  # weight of the squares of coefficients, times the fourth power of their order: for what a gap leaves open
+HUBER, ROUNDS = 2.5, 4  # deviations beyond which points count less; rounds of weighting
+MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
+OFF_SHARE = 0.1  # of the points that may be further off than a star-shaped section allows
+SLOPES = 3  # columns for how the section changes along the curve: its mean and its first harmonics
+
+
+class Case(str, Enum):
+    """What became of a slice."""
+
+    FITTED = "fitted"
+    FEW = "too few points"
+    GAP = "gap in angle too large"
+    NOT_STAR = "not star-shaped about the skeleton"
+
+
+@dataclass(frozen=True)
+class Section:
+    """One slice.
+
+    Attributes
+    ----------
+    v : its place on the curve; case : what became of it.
+    series : a0, then a_i, b_i in pairs, (2 N + 1,); empty unless fitted.
+    points : how many the ring has; gap : the largest angle without one, in radians.
+    error : RMS of the misfit over the mean radius, NaN unless fitted.
+    """
+
+    v: float
+    case: Case
+    series: Numbers
+    points: int
+    gap: float
+    error: float
+
+
+def fit_section(v: float, ring: Ring, order: int, params: SurfaceParams) -> Section:
+    """Return the series of so high an order through a ring, or the reason why there is none."""
+    none = Section(v, Case.FEW, np.zeros(0), len(ring.u), largest_gap(ring.u), np.nan)
+    if len(ring.u) < max(params.least_points, 2 * order + 1 + SLOPES + 1):
+        return none
+    if none.gap > params.gap:
+        return replace(none, case=Case.GAP)
+    basis = basis_of(ring, v, order)
+    weights = robust_weights(basis, ring.r, order)
+    solution, _ = solved(basis, ring.r, weights, order)
+    misfit = np.abs(ring.r - basis @ solution)
+    if (misfit > params.uneven * solution[0]).mean() > OFF_SHARE or solution[0] <= 0:
+        return replace(none, case=Case.NOT_STAR)
+    error = float(np.sqrt(np.average(misfit**2, weights=weights)) / solution[0])
+    return Section(v, Case.FITTED, solution[: 2 * order + 1], len(ring.u), none.gap, error)
+
+
+def largest_gap(u: Numbers) -> float:
+    """Return the largest angle between neighbours in angle, 2 pi where there are fewer than two."""
+    if len(u) < 2:
+        return 2 * np.pi
+    ordered = np.sort(np.mod(u, 2 * np.pi))
+    return float(np.diff(np.append(ordered, ordered[0] + 2 * np.pi)).max())
+
+
+def basis_of(ring: Ring, v: float, order: int) -> Numbers:
+    """Return (k, 2 N + 4): 1, sin u, cos u, sin 2u ..., and three columns that grow along the curve."""
+    i = np.arange(1, order + 1)
+    waves = np.stack([np.sin(ring.u[:, None] * i), np.cos(ring.u[:, None] * i)], axis=2).reshape(len(ring.u), -1)
+    series = np.concatenate([np.ones((len(ring.u), 1)), waves], axis=1)
+    return np.concatenate([series, (ring.v - v)[:, None] * series[:, :SLOPES]], axis=1)
+
+
+def solved(basis: Numbers, r: Numbers, weights: Numbers, order: int) -> tuple[Numbers, Numbers]:
+    """Return the coefficients of least squares, and the leverage (k,) of every point."""
+    ridge = np.concatenate([[0.0], np.repeat(np.arange(1.0, order + 1) ** 4, 2), np.zeros(SLOPES)])
+    ridge[-SLOPES:] = 1e-6 * (basis[:, -SLOPES:] ** 2).sum(axis=0) + 1e-12
+    heavy = weights[:, None] * basis
+    matrix = basis.T @ heavy + np.diag(RIDGE * len(r) * ridge)
+    inverse = np.linalg.inv(matrix)
+    return inverse @ (heavy.T @ r), np.einsum("kc,cd,kd->k", basis, inverse, heavy)
+
+
+def robust_weights(basis: Numbers, r: Numbers, order: int) -> Numbers:
+    """Return (k,) the weights of points after Huber: 1, or less for those that are far off."""
+    weights = np.ones(len(r))
+    for _ in range(ROUNDS):
+        misfit = np.abs(r - basis @ solved(basis, r, weights, order)[0])
+        scale = max(HUBER * MAD * float(np.median(misfit)), 1e-12 * float(r.max()))
+        weights = 1 / np.maximum(1, misfit / scale)
+    return np.asarray(weights)
+
+
+def left_out_error(v: float, ring: Ring, order: int) -> float:
+    """Return the mean square of what each point is off the series through the others, over the mean radius."""
+    basis = basis_of(ring, v, order)
+    weights = robust_weights(basis, ring.r, order)
+    solution, leverage = solved(basis, ring.r, weights, order)
+    off = (ring.r - basis @ solution) / np.maximum(1 - leverage, 0.05)
+    return float(np.average(off**2, weights=weights) / solution[0] ** 2)

@@ -1,0 +1,1 @@
+"""Parametric surfaces with two derivatives: fitted around a skeleton curve, and analytic."""
