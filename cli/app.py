@@ -14,9 +14,11 @@ from tiskel.cli.convert import convert
 from tiskel.cli.doctor import doctor
 from tiskel.cli.info import info
 from tiskel.cli.metrics import metrics
+from tiskel.cli.roll import roll
 from tiskel.cli.run import run
 from tiskel.cli.shape import shape
 from tiskel.cli.skeleton import skeleton
+from tiskel.cli.slice import slice_command
 from tiskel.cli.stability import stability
 from tiskel.errors import TiskelError
 
@@ -32,6 +34,8 @@ app = typer.Typer(
 )
 for command in (contract, skeleton, metrics, stability, run, shape, convert, info, doctor):
     app.command(no_args_is_help=command not in (doctor, shape))(command)
+app.command("slice", no_args_is_help=True)(slice_command)
+app.command(no_args_is_help=True)(roll)
 
 
 class Interrupted(BaseException):

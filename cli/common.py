@@ -5,7 +5,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tiskel.cli import options
+from tiskel.cli import options, surface_options
 from tiskel.cli.console import begin
 
 Command = Callable[..., None]
@@ -27,6 +27,14 @@ INPUT: dict[str, tuple[Any, Any]] = {
     "noise_kind": (options.NoiseKind, "coordinates"),
     "seed": (options.Seed, 0),
 }
+ROLLING: dict[str, tuple[Any, Any]] = {
+    "model": (surface_options.Model, "both"),
+    "side": (surface_options.SideName, surface_options.ROLL.side),
+    "sphere": (surface_options.Sphere, surface_options.ROLL.radius),
+    "omega": (surface_options.Omega, surface_options.OMEGA),
+    "duration": (surface_options.Duration, surface_options.ROLL.duration),
+    "start": (surface_options.Start, surface_options.START),
+}
 
 
 def common(command: Command) -> Command:
@@ -47,6 +55,16 @@ def reads_cloud(command: Command) -> Command:
         command(**arguments, conditioning=conditioning)
 
     return _with_options(command, run, INPUT, drop=("conditioning",))
+
+
+def rolls(command: Command) -> Command:
+    """Add the options of slicing and rolling and hand those of rolling to the command as one mapping called rolling."""
+
+    def run(**arguments: Any) -> None:
+        rolling = {name: arguments.pop(name) for name in ROLLING}
+        command(**arguments, rolling=rolling)
+
+    return _with_options(command, run, ROLLING, drop=("rolling",))
 
 
 def _with_options(

@@ -4,13 +4,16 @@ import html
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tiskel.cli.run_surface import Rolled
     from tiskel.contraction import Contraction
     from tiskel.quality.result import Quality
     from tiskel.skeleton import Skeleton
     from tiskel.stability import Stability
 
 
-def report(name: str, c: "Contraction", s: "Skeleton", q: "Quality", stability: "Stability") -> str:
+def report(
+    name: str, c: "Contraction", s: "Skeleton", q: "Quality", stability: "Stability", rolled: "Rolled"
+) -> str:  # fmt: skip
     """Return one page: what went in, what came out, the steps, the measures, the pictures."""
     facts = {
         "points": len(c.cloud),
@@ -41,7 +44,32 @@ def report(name: str, c: "Contraction", s: "Skeleton", q: "Quality", stability: 
         history=history,
         stability=html.escape(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}"),
         measures="".join(map(_row, _measures(q))),
+        surfaces=_surfaces(rolled),
     )
+
+
+def _surfaces(rolled: "Rolled") -> str:
+    """Return tables of surfaces and runs with their pictures, and why there are none."""
+    parts = []
+    if rolled.surfaces is not None:
+        head = ("branch", "length", "radius", "order", "misfit", "frame", "slices", "warnings")
+        rows: list[tuple[object, ...]] = [
+            (
+                s.name, f"{s.length:.6g}", f"{s.radius:.4g}", s.order, f"{s.error:.2%}", s.frame,
+                ", ".join(f"{count} {case}" for case, count in s.cases().items()), "; ".join(s.warnings),
+            )
+            for s in rolled.surfaces
+        ]  # fmt: skip
+        rows += [(branch, "", "", "", "", "", "", why) for branch, why in rolled.surfaces.rejected.items()]
+        parts += [_row(head, "th"), *map(_row, rows), IMAGE.format("slices.png", "slices, a section, the surface")]
+    if rolled.runs:
+        parts += [_row((key, *(r.as_dict()[key] for r in rolled.runs))) for key in TOLD]
+        parts.append(IMAGE.format("roll.png", "the contact on object and sphere, and the states over time"))
+    return f"<table>{''.join(parts)}</table><p>{html.escape(rolled.reason)}</p>"
+
+
+TOLD = ("model", "side", "radius", "status", "reason", "path_object", "path_sphere", "least_margin", "evaluations")
+IMAGE = '</table><img src="{}" alt="{}"><table>'
 
 
 def _measures(quality: "Quality") -> list[tuple[str, str, str]]:
@@ -69,6 +97,8 @@ img {{ max-width: 100% }}
 <h2>Quality</h2>
 <img src="metrics.png" alt="the measures as heat maps, barcodes and histograms">
 <table>{measures}</table>
+<h2>Surface and rolling</h2>
+{surfaces}
 <h2>Contraction</h2>
 <table>{history}</table>
 <p>{stability}</p>

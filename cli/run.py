@@ -12,10 +12,12 @@ import typer
 
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
-from tiskel.cli.common import common, reads_cloud
+from tiskel.cli import surface_options as so
+from tiskel.cli.common import common, reads_cloud, rolls
 from tiskel.cli.report import report
+from tiskel.cli.run_surface import Rolled, settings_of, sliced_and_rolled
 from tiskel.errors import TiskelError
-from tiskel.params import SkeletonParams
+from tiskel.params import SkeletonParams, SurfaceParams
 
 if TYPE_CHECKING:
     from tiskel.contraction import Contraction
@@ -32,6 +34,7 @@ Folder = Annotated[
 
 @common
 @reads_cloud
+@rolls
 def run(
     source: o.Source,
     output: Folder,
@@ -43,15 +46,19 @@ def run(
     solver: o.SolverName = None,
     raw: o.Raw = o.SKELETON.raw,
     radius: o.Radius = o.SKELETON.radius,
+    branch: so.Branch = so.SURFACE.branch,
     *,
     conditioning: Mapping[str, Any],
+    rolling: Mapping[str, Any],
 ) -> None:
-    """Do everything in one go: stage files, exports, measures, pictures and a report in one folder.
+    """Do everything in one go: stage files, exports, measures, surfaces, a roll, pictures and a report in one folder.
 
     `tiskel run scan.ply -o out/`
     """
     params = stages.contraction_params(method, neighbours, max_steps, normalise, solver)
     skeleton_params = SkeletonParams(raw=raw, radius=radius)
+    surface_params = SurfaceParams(branch=branch)
+    settings_of(rolling)  # wrong options are told before the work begins
     _make_folder(output)
     seconds: dict[str, float] = {}
     cloud, points = _timed(seconds, "read", lambda: stages.cloud_points(source, **conditioning))
@@ -64,7 +71,8 @@ def run(
     quality = _timed(seconds, "metrics", lambda: evaluate(s.cloud, s.contracted, s.nodes, s.edges, origin=s.origin))
     stability = _timed(seconds, "stability", lambda: assess_stability(c))
     console.say(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}")
-    made = Made(cloud, c, s, skeleton_params, quality, stability)
+    rolled = _timed(seconds, "surface", lambda: sliced_and_rolled(s, surface_params, rolling))
+    made = Made(cloud, c, s, skeleton_params, quality, stability, rolled)
     drawn = _timed(seconds, "pictures", made.pictures)
     files: dict[str, Callable[[], bytes]] = {}
     files |= {**made.stage_files(), **made.documents(), **{name: partial(bytes, data) for name, data in drawn.items()}}
@@ -86,6 +94,7 @@ class Made:
     skeleton_params: SkeletonParams
     quality: "Quality"
     stability: "Stability"
+    rolled: Rolled
 
     def stage_files(self) -> dict[str, Callable[[], bytes]]:
         from tiskel.io.contraction_file import dump_contraction
@@ -101,13 +110,18 @@ class Made:
             "skeleton.swc": lambda: to_swc(self.skeleton),
             "skeleton.json": lambda: to_json(self.skeleton),
             "metrics.ply": lambda: dump_heat(self.quality),
+            **self.rolled.stage_files(source),
         }
 
     def documents(self) -> dict[str, Callable[[], bytes]]:
-        page = partial(report, self.cloud.name, self.contraction, self.skeleton, self.quality, self.stability)
+        page = partial(
+            report, self.cloud.name, self.contraction, self.skeleton, self.quality, self.stability, self.rolled
+        )
+        rolls = {name: partial(_document, document) for name, document in self.rolled.documents().items()}
         return {
             "metrics.json": lambda: _document(self.quality.as_dict()),
             "stability.json": lambda: _document(self.stability.as_dict()),
+            **rolls,
             "report.html": lambda: page().encode(),
         }
 
@@ -121,6 +135,7 @@ class Made:
             "skeleton.png": skeleton_picture(self.skeleton, title),
             "metrics.png": quality_picture([(title, self.skeleton.cloud, self.quality)]),
             "stability.png": stability_picture(self.contraction, self.stability, title),
+            **self.rolled.pictures(title),
         }
 
 

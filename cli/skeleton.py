@@ -40,8 +40,9 @@ def skeleton(
     chosen = format_of(format_name, str(output or ""))
     params = SkeletonParams(raw=raw, radius=radius)
     from tiskel import extract_skeleton
-    from tiskel.io.contraction_file import parse_contraction, source_of
+    from tiskel.io.contraction_file import parse_contraction
     from tiskel.io.exports import EXPORTS
+    from tiskel.io.ply import source_of
     from tiskel.io.skeleton_file import dump_skeleton
     from tiskel.io.streams import read_bytes
 
@@ -50,7 +51,7 @@ def skeleton(
     stages.tell_skeleton(made)
     target = stages.output_path(output, source, f"skeleton.{chosen}")
     if chosen == "ply":
-        stages.write(target, lambda: dump_skeleton(made, params, source_of(data, str(source))))
+        stages.write(target, lambda: dump_skeleton(made, params, source_of(data, "contraction", str(source))))
     else:
         stages.write(target, lambda: EXPORTS[chosen](made))
 

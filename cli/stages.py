@@ -1,6 +1,8 @@
 """What the commands do with the library: read, run a stage, tell, write."""
 
+import math
 import os
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
     from tiskel.contraction import Contraction
     from tiskel.io.clouds import Cloud
     from tiskel.skeleton import Skeleton
+
+PARTS_OF_PI = re.compile(r"([+-]?)(?:(\d+(?:\.\d+)?)\*)?pi(?:/(\d+(?:\.\d+)?))?")
 
 
 def cloud_points(
@@ -134,10 +138,24 @@ def _numbers(option: str, value: str | None, count: int) -> tuple[float, ...] | 
     """Return the numbers of a comma-separated option."""
     if value is None:
         return None
+    return numbers_of(option, value, count)
+
+
+def numbers_of(option: str, value: str, count: int) -> tuple[float, ...]:
+    """Return so many numbers of a comma-separated option; pi, -pi/2 and 3*pi/4 are numbers too."""
     try:
-        numbers = tuple(float(word) for word in value.split(","))
+        numbers = tuple(_number(word) for word in value.split(","))
     except ValueError:
         numbers = ()
     if len(numbers) != count:
         raise TiskelError(f"{option} needs {count} numbers separated by commas, got {value!r}")
     return numbers
+
+
+def _number(word: str) -> float:
+    """Return a number, or a multiple or a part of pi."""
+    found = PARTS_OF_PI.fullmatch(word.strip())
+    if found is None:
+        return float(word)
+    sign, factor, divisor = found.groups()
+    return float(f"{sign}1") * float(factor or 1) * math.pi / float(divisor or 1)

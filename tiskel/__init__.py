@@ -27,17 +27,28 @@ if TYPE_CHECKING:
     from tiskel.io.curves import load_curve as load_curve
     from tiskel.io.skeleton_file import read_skeleton as read_skeleton
     from tiskel.io.skeleton_file import write_skeleton as write_skeleton
+    from tiskel.io.surface_file import read_surfaces as read_surfaces
+    from tiskel.io.surface_file import write_surfaces as write_surfaces
     from tiskel.params import ContractionParams as ContractionParams
     from tiskel.params import MetricParams as MetricParams
+    from tiskel.params import RollParams as RollParams
     from tiskel.params import SkeletonParams as SkeletonParams
     from tiskel.params import StabilityParams as StabilityParams
+    from tiskel.params import SurfaceParams as SurfaceParams
     from tiskel.quality.evaluate import evaluate as evaluate
     from tiskel.quality.result import Quality as Quality
+    from tiskel.rolling.inputs import Inputs as Inputs
+    from tiskel.rolling.roll import roll as roll
+    from tiskel.rolling.trajectory import RollStatus as RollStatus
+    from tiskel.rolling.trajectory import Trajectory as Trajectory
     from tiskel.shapes.make import ShapeParams as ShapeParams
     from tiskel.shapes.make import make_shape as make_shape
     from tiskel.shapes.make import shape_graph as shape_graph
     from tiskel.skeleton import Skeleton as Skeleton
     from tiskel.skeleton import extract_skeleton as extract_skeleton
+    from tiskel.slicing.fit import FittedSurface as FittedSurface
+    from tiskel.slicing.fit import Surfaces as Surfaces
+    from tiskel.slicing.fit import fit_surface as fit_surface
     from tiskel.stability import Stability as Stability
     from tiskel.stability import assess_stability as assess_stability
     from tiskel.trace import Status as Status
@@ -49,8 +60,12 @@ _HOME = {
     "Contraction": "contraction",
     "ContractionParams": "params",
     "Curve": "io.curves",
+    "FittedSurface": "slicing.fit",
+    "Inputs": "rolling.inputs",
     "MetricParams": "params",
     "Quality": "quality.result",
+    "RollParams": "params",
+    "RollStatus": "rolling.trajectory",
     "ShapeParams": "shapes.make",
     "Skeleton": "skeleton",
     "SkeletonParams": "params",
@@ -58,20 +73,27 @@ _HOME = {
     "StabilityParams": "params",
     "Status": "trace",
     "StepRecord": "trace",
+    "SurfaceParams": "params",
+    "Surfaces": "slicing.fit",
     "TiskelError": "errors",
+    "Trajectory": "rolling.trajectory",
     "assess_stability": "stability",
     "condition": "conditioning",
     "contract": "contraction",
     "evaluate": "quality.evaluate",
     "extract_skeleton": "skeleton",
+    "fit_surface": "slicing.fit",
     "load_cloud": "io.clouds",
     "load_curve": "io.curves",
     "make_shape": "shapes.make",
     "read_contraction": "io.contraction_file",
     "read_skeleton": "io.skeleton_file",
+    "read_surfaces": "io.surface_file",
+    "roll": "rolling.roll",
     "shape_graph": "shapes.make",
     "write_contraction": "io.contraction_file",
     "write_skeleton": "io.skeleton_file",
+    "write_surfaces": "io.surface_file",
 }
 __all__ = sorted(_HOME)  # noqa: PLE0605
 

@@ -97,11 +97,6 @@ def _sections(vertex: Any) -> dict[str, Any]:
     return {"sections": np.array(vertex["section"], np.int32), "levels": np.array(vertex["level"], np.int32)}
 
 
-def source_of(data: bytes, name: str) -> dict[str, str]:
-    """Return the name and SHA-256 of the cloud that a stage file was made from."""
-    return dict(ply.facts(ply.parse(data, name), STAGE, name).get("source", {}))
-
-
 def _step_facts(step: StepRecord) -> dict[str, Any]:
     """Return a record without its times, which would differ from run to run."""
     return {

@@ -96,6 +96,11 @@ def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
     return found_facts
 
 
+def source_of(data: bytes, stage: str, name: str) -> dict[str, str]:
+    """Return the name and SHA-256 of the cloud that a stage file was made from."""
+    return dict(facts(parse(data, name), stage, name).get("source", {}))
+
+
 VERB = {"contraction": "contract", "skeleton": "skeleton"}
 
 

@@ -1,0 +1,96 @@
+"""``tiskel roll``."""
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tiskel.cli import console, stages
+from tiskel.cli import options as o
+from tiskel.cli import surface_options as so
+from tiskel.cli.common import common
+
+if TYPE_CHECKING:
+    from tiskel.rolling.trajectory import Trajectory
+
+BranchName = Annotated[
+    str | None,
+    typer.Option(
+        "--branch",
+        metavar="B",
+        help="Which surface. [default: the longest]",
+        show_default=False,
+        rich_help_panel="Method",
+    ),
+]
+Summary = Annotated[
+    bool, typer.Option("--json", help="A summary in JSON on standard output.", rich_help_panel="Output")
+]
+
+
+@common
+def roll(
+    source: o.Source,
+    output: o.Output = None,
+    branch: BranchName = None,
+    model: so.Model = so.ROLL.model,
+    side: so.SideName = so.ROLL.side,
+    radius: so.SphereRadius = so.ROLL.radius,
+    omega: so.Omega = so.OMEGA,
+    velocity: so.Velocity = so.VELOCITY,
+    inputs: so.InputsFile = None,
+    twist: so.TwistName = so.ROLL.twist,
+    duration: so.Duration = so.ROLL.duration,
+    rate: so.Rate = so.ROLL.rate,
+    start: so.Start = so.START,
+    start_at: so.StartAt = None,
+    normals: so.NormalsName = so.ROLL.normals,
+    as_json: Summary = False,
+    plot: o.Plot = None,
+    animate: so.Animate = None,
+) -> None:
+    """Roll a sphere over a surface.
+
+    Reads surface.json, writes the trajectory as CSV, with --json the summary in its place unless -o names a file:
+    `tiskel slice s.ply | tiskel roll - --omega 1,0,0 --duration 5 > path.csv`
+    """
+    settings = so.roll_settings(
+        model, side, radius, omega, velocity, twist, duration, rate, start, start_at, normals
+    )  # fmt: skip
+    given = so.inputs_of(inputs)
+    from tiskel import roll as run
+    from tiskel.io.roll_files import to_csv
+    from tiskel.io.surface_file import read_surfaces
+
+    surface = read_surfaces(source).named(branch)
+    runs = [run(surface, params, given) for params in settings]
+    tell_runs(runs)
+    if plot is not None:
+        from tiskel.pictures.canvas import picture_kind
+        from tiskel.pictures.rolling import rolling_picture
+
+        stages.write(plot, lambda: rolling_picture(surface, runs, source.name, picture_kind(str(plot))))
+    if animate is not None:
+        from tiskel.pictures.animation import animation
+        from tiskel.pictures.canvas import picture_kind
+
+        stages.write(animate, lambda: animation(surface, runs[0], picture_kind(str(animate))))
+    if as_json:
+        typer.echo(json.dumps(summary(surface.name, runs), allow_nan=False))
+    if output is not None or not as_json:
+        stages.write(stages.output_path(output, source, "path.csv"), lambda: to_csv(runs))
+
+
+def tell_runs(runs: "list[Trajectory]") -> None:
+    """Print a line for every run, and warnings."""
+    for r in runs:
+        console.say(
+            f"{r.params.model} model, sphere of radius {r.radius:.4g} {r.params.side}: {r.status.value}, {r.reason}; "
+            f"way over the object {r.path_object:.6g}, over the sphere {r.path_sphere:.6g}"
+        )
+    console.warn(tuple(dict.fromkeys(warning for r in runs for warning in r.warnings)))
+
+
+def summary(branch: str, runs: "list[Trajectory]") -> dict[str, Any]:
+    """Return the summaries of the runs on one branch."""
+    return {"branch": branch, "runs": [r.as_dict() for r in runs]}

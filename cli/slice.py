@@ -1,0 +1,130 @@
+"""``tiskel slice``."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tiskel.cli import console, stages
+from tiskel.cli import options as o
+from tiskel.cli import surface_options as so
+from tiskel.cli.common import common
+from tiskel.errors import TiskelError
+
+if TYPE_CHECKING:
+    from tiskel.params import SurfaceParams
+    from tiskel.slicing.fit import Surfaces
+
+CurveFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--curve",
+        metavar="FILE",
+        help="A curve from elsewhere; IN is then the cloud.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+MeshFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--mesh",
+        metavar="OUT",
+        help="Also the surfaces as triangles, PLY.",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
+Caps = Annotated[bool, typer.Option("--caps", help="Close the ends of the triangles.", rich_help_panel="Output")]
+TableFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--csv",
+        metavar="OUT",
+        help="Also a table: area, perimeter, radius and ellipse of every slice.",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
+
+
+@common
+def slice_command(
+    source: o.Source,
+    output: o.Output = None,
+    curve: CurveFile = None,
+    interval: so.Interval = so.SURFACE.interval,
+    branch: so.Branch = so.SURFACE.branch,
+    m: so.FrameField = so.M,
+    order_rule: so.OrderRuleName = so.SURFACE.order_rule,
+    no_recentre: so.NoRecentre = not so.SURFACE.recentre,
+    mesh: MeshFile = None,
+    caps: Caps = False,
+    table: TableFile = None,
+    plot: o.Plot = None,
+) -> None:
+    """Fit a smooth surface around every branch of a skeleton, slice by slice.
+
+    Reads skeleton.ply, writes surface.json, which holds all that roll needs:
+    `tiskel skeleton c.ply | tiskel slice - --mesh tube.ply | tiskel roll - > path.csv`
+    """
+    params = so.surface_params(branch, interval, m, order_rule, no_recentre)
+    surfaces, origin = _fitted(source, curve, params)
+    tell_surfaces(surfaces)
+    from tiskel.io.mesh_file import dump_mesh
+    from tiskel.io.surface_file import dump_surfaces
+    from tiskel.slicing.mesh import joined_mesh, surface_mesh
+
+    if mesh is not None:
+        stages.write(mesh, lambda: dump_mesh(joined_mesh([surface_mesh(s, caps=caps) for s in surfaces]), origin))
+    if table is not None:
+        stages.write(table, lambda: slices_csv(surfaces))
+    if plot is not None:
+        from tiskel.pictures.canvas import picture_kind
+        from tiskel.pictures.slices import slices_picture
+
+        stages.write(plot, lambda: slices_picture(surfaces, source.name, picture_kind(str(plot))))
+    target = stages.output_path(output, source, "surface.json")
+    stages.write(target, lambda: dump_surfaces(surfaces, params, origin))
+
+
+def _fitted(source: Path, curve: Path | None, params: "SurfaceParams") -> "tuple[Surfaces, dict[str, str]]":
+    """Return the surfaces of a skeleton, or of a curve in a cloud, and what they were made from."""
+    from tiskel import fit_surface, load_cloud
+    from tiskel.io.curves import load_curve
+    from tiskel.io.ply import source_of
+    from tiskel.io.skeleton_file import parse_skeleton
+    from tiskel.io.streams import read_bytes
+
+    if curve is None:
+        data = read_bytes(source)
+        return fit_surface(parse_skeleton(data, str(source)), params), source_of(data, "skeleton", str(source))
+    if str(source) == "-" == str(curve):
+        raise TiskelError("the cloud and --curve cannot both come from standard input; name a file for one of them")
+    cloud = load_cloud(source)
+    console.warn(cloud.warnings)
+    return fit_surface(load_curve(curve), params, cloud.points), cloud.source
+
+
+def tell_surfaces(surfaces: "Surfaces") -> None:
+    """Print a line for every surface, why others have none, and warnings."""
+    from tiskel.slicing.mesh import mesh_report
+
+    for s in surfaces:
+        off, told = mesh_report(s), ", ".join(f"{count} {case}" for case, count in s.cases().items())
+        frame = f"frame {s.frame}" + (f" ({s.note})" if s.note else "")
+        console.say(
+            f"branch {s.name}: length {s.length:.6g}, radius {s.radius:.4g}, order {s.order}, slices: {told}; {frame}; "
+            f"distance to {len(s.rows)} points: mean {off['mean']:.3g}, 95 % {off['p95']:.3g}, most {off['max']:.3g}"
+        )
+    for name, reason in surfaces.rejected.items():
+        console.say(f"branch {name} has no surface: {reason}")
+    console.warn(tuple(warning for s in surfaces for warning in s.warnings))
+
+
+def slices_csv(surfaces: "Surfaces") -> bytes:
+    """Return the table of all slices."""
+    from tiskel.quality.tables import to_csv
+    from tiskel.slicing.mesh import slice_table
+
+    return to_csv([row for surface in surfaces for row in slice_table(surface)])
