@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from reference.rolling import pose_over_time
 from reference.tubes import bent_tube, straight_tube, tube
 from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
+from tiskel.rolling.equations import local_rates
 from tiskel.rolling.inputs import Inputs
 from tiskel.rolling.models import model_of
 from tiskel.rolling.roll import roll
@@ -149,6 +151,19 @@ def test_the_three_conventions_of_a_twist_are_one_motion() -> None:
         np.testing.assert_allclose(again.state[-1], r.state[-1], atol=2e-5)
 
 
+def test_the_local_model_is_its_chart_integrated() -> None:
+    """The published five equations, integrated as they stand, away from the poles; R depends on v here."""
+    p = RollParams(model="local", radius=0.1, omega=(0.3, 0.8, 0.2), velocity=(0.01, 0.02, 0), duration=1.0, **SHARP)
+    r = roll(BENT, p)
+
+    def rate(t: float, y: Numbers) -> Any:
+        frame, radius = BENT.at(float(y[0]), float(y[1]))
+        return local_rates(radius, frame.l, 1.0, 0.1, float(y[2]), float(y[4]), p.omega, p.velocity)
+
+    chart = solve_ivp(rate, (0, 1.0), p.start, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(r.state[-1], chart.y[:, -1], atol=1e-8)
+
+
 def test_inputs_over_time_are_straight_between_their_rows() -> None:
     inputs = Inputs(np.array([0.0, 2.0]), np.array([[0, 0, 0, 0, 0, 0], [2.0, 0, 0, 0, 0, 0]]))
     assert inputs.at(0.5) == ((0.5, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -174,7 +189,7 @@ def narrowing() -> Any:
 def test_a_run_ends_where_the_sphere_no_longer_fits() -> None:
     r = roll(narrowing(), RollParams(radius=1.0, omega=(1.0, 0, 0), start=(0.1, 0.3, 0, 0, 0), duration=60.0, **SHARP))
     assert r.status is RollStatus.TIGHT
-    assert r.margin[-1] == pytest.approx(0, abs=1e-6)
+    assert r.margin[-1] == pytest.approx(1e-4, abs=1e-6)  # of 1/R_s: the event is just before the singular place
 
 
 def test_a_sphere_that_cannot_begin_is_told_what_to_do() -> None:

@@ -41,7 +41,7 @@ def _slices(panel: Any, s: FittedSurface, view: Points) -> None:
         panel.plot(*(ring @ view.T).T, color=POINTS if fitted else INK, linewidth=0.6, linestyle="-" if fitted else ":")
     panel.plot(*(s.tube.curve(np.linspace(0, V_STOP, 200)) @ view.T).T, color=CURVE, linewidth=1.4)
     told = ", ".join(f"{count} {case}" for case, count in s.cases().items())
-    panel.set_title(f"branch {s.name}: {told}", fontsize=8)
+    panel.set_title(f"branch {s.name}: {told}", fontsize=8, wrap=True, loc="left")
 
 
 def _section(polar: Any, flat: Any, s: FittedSurface) -> None:

@@ -16,6 +16,7 @@ from tiskel.slicing.fit import FittedSurface
 from tiskel.surfaces.forms import forms_of
 from tiskel.surfaces.jets import ParametricSurface
 
+TOUCHING = 1e-4  # of 1/R_s: with less left the contact runs away, and no solver follows it
 SUNK, ROUGH = 0.05, 4.0  # points deeper in the sphere than so many of its radii, or RMS misfits, are met
 
 
@@ -39,7 +40,7 @@ def endings(surface: ParametricSurface, model: RollingModel, params: RollParams,
     found = [
         Ending(
             RollStatus.TIGHT, "lambda_min(K_o) + 1/R_s is 0: the surface bends as sharply as the sphere",
-            lambda u, v: float(margin(model.forms(u, v), radius)),
+            lambda u, v: float(margin(model.forms(u, v), radius)) * radius - TOUCHING,
         )
     ]  # fmt: skip
     if isfinite(low) or isfinite(high):

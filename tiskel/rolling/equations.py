@@ -54,6 +54,13 @@ def travel(forms: Forms, rates: Pair) -> Pair:
     return m11 * rates[0] + m12 * rates[1], m22 * rates[1]
 
 
+def frame_turn(forms: Forms, rates: Pair) -> Triple:
+    """Return the angular velocity of the contact frame in its own axes: -(K u')_2, (K u')_1, T u'."""
+    (k11, k12), (k21, k22) = forms.K
+    u, v = rates
+    return -(k21 * u + k22 * v), k11 * u + k12 * v, forms.T[0] * u + forms.T[1] * v
+
+
 def sphere_rates(
     forms: Forms, radius: float, u_s: Scalar, psi: Scalar, omega: Triple, velocity: Triple
 ) -> Rates:  # fmt: skip

@@ -6,10 +6,9 @@ import numpy as np
 
 from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
-from tiskel.params import RollParams, Twist
+from tiskel.params import RollParams
 from tiskel.rolling.equations import Triple
 from tiskel.rolling.sphere import chart_of, rotation_of, turn_of
-from tiskel.surfaces.forms import Forms
 
 PAUSE = 10.0  # times the median step between rows: a longer one is told
 
@@ -72,16 +71,15 @@ def pauses(t: Numbers) -> tuple[str, ...]:
     return (f"inputs: no row between t = {t[row]:g} and {t[row + 1]:g}; values there are straight in between",)
 
 
-def in_contact_frame(twist: Twist, forms: Forms, q: Numbers, omega: Triple, velocity: Triple) -> tuple[Triple, Triple]:
-    """Return omega and V of the object relative to the sphere in the axes of the contact frame."""
-    if twist == "object":
-        return omega, velocity
-    frame = np.array(forms[:3]).T
-    axes = frame
-    if twist == "sphere":  # its own frame at the contact is F R3
-        axes = frame @ turn_of(float(chart_of(frame, rotation_of(np.asarray(q)))[2]))
-        turn = frame.T @ axes
-    else:
-        turn = frame.T
+def sphere_axes(q: Numbers) -> Numbers:
+    """Return R3 (3, 3), the sphere's own frame at the contact in the axes of the object's, from F^T Q."""
+    return turn_of(float(chart_of(np.eye(3), rotation_of(q))[2]))
+
+
+def of_the_object(turn: Numbers, omega: Triple, velocity: Triple) -> tuple[Triple, Triple]:
+    """Return omega and V of the object relative to the sphere from those of the sphere relative to the object.
+
+    ``turn`` (3, 3) takes the axes that these are given in to those of the contact frame.
+    """
     w, v = -turn @ np.array(omega), -turn @ np.array(velocity)
     return (float(w[0]), float(w[1]), float(w[2])), (float(v[0]), float(v[1]), 0.0)

@@ -5,6 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
+from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Pair, Triple, local_object_rates, object_rates
@@ -15,10 +16,13 @@ from tiskel.surfaces.tube import Tube
 
 
 class RollingModel(Protocol):
-    """How the contact of a sphere moves over an object, and in which axes its orientation is kept."""
+    """How the contact of a sphere moves over an object, and how its frame turns."""
 
     def forms(self, u: Scalar, v: Scalar) -> Forms:
-        """Return the frame that orientations refer to, with its forms."""
+        """Return the forms that the equations are in."""
+
+    def frame(self, u: float, v: float) -> Numbers:
+        """Return the contact frame (3, 3) on the surface as it is, x, y and z as columns."""
 
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
         """Return u_o' and v_o'."""
@@ -35,6 +39,9 @@ class GlobalModel:
     def forms(self, u: Scalar, v: Scalar) -> Forms:
         return forms_of(self.surface.jet(u, v), self.sigma)
 
+    def frame(self, u: float, v: float) -> Numbers:
+        return frame_at(self.surface, self.sigma, u, v)
+
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
         return object_rates(forms, self.radius, omega, velocity)
 
@@ -50,9 +57,17 @@ class LocalModel:
     def forms(self, u: Scalar, v: Scalar) -> Forms:
         return forms_of(straightened(self.tube, u, v), self.sigma)
 
+    def frame(self, u: float, v: float) -> Numbers:
+        return frame_at(self.tube, self.sigma, u, v)
+
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
         frame, r = self.tube.at(u, v)
         return local_object_rates(r, frame.l, self.sigma, self.radius, omega, velocity)
+
+
+def frame_at(surface: ParametricSurface, sigma: float, u: float, v: float) -> Numbers:
+    """Return the contact frame (3, 3), x, y and z as columns."""
+    return np.asarray(np.array(forms_of(surface.jet(u, v), sigma)[:3], float).T)
 
 
 def straightened(tube: Tube, u: Scalar, v: Scalar) -> Jet:

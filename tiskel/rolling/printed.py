@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Numbers, Points
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Pair, Triple, object_rates
+from tiskel.rolling.models import frame_at
 from tiskel.slicing.fit import FittedSurface
 from tiskel.surfaces.forms import Forms, forms_of
 from tiskel.surfaces.jets import Scalar
@@ -51,6 +52,9 @@ class PrintedModel:
         (m11, m12), (_, m22) = forms.M
         a, b, c = (value if value.ndim else float(value) for value in (flat[0, 0], flat[0, 1], flat[1, 1]))
         return forms._replace(K=((a * m11, a * m12 + b * m22), (b * m11, b * m12 + c * m22)))
+
+    def frame(self, u: float, v: float) -> Numbers:
+        return frame_at(self.tube, self.sigma, u, v)
 
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
         return object_rates(forms, self.radius, omega, velocity)

@@ -7,7 +7,7 @@ import numpy as np
 from tiskel.arrays import Numbers
 from tiskel.rolling.equations import controllability, margin
 from tiskel.rolling.models import RollingModel, tube_of
-from tiskel.rolling.sphere import chart_of, orientations, quaternions_of, rotation_of
+from tiskel.rolling.sphere import chart_of, quaternions_of, rotation_of
 from tiskel.surfaces.forms import Forms, forms_of
 from tiskel.surfaces.jets import ParametricSurface, Vector
 
@@ -19,13 +19,13 @@ def read(
 ) -> dict[str, Numbers]:
     """Return the columns of a trajectory from solved states (n, 6).
 
-    The local model keeps the sphere's orientation over its own straight
-    surface; its chart is what is reported, and the pose that this chart has on
-    the surface as it is. psi begins nearest to where it was started.
+    The quaternions are those of F^T Q; Q is reported with the frame of the
+    surface as it is. psi begins nearest to where it was started.
     """
     u, v = y[:, 0], y[:, 1]
     own = model.forms(u, v)
-    u_s, v_s, psi = chart_of(frames_of(own), rotation_of(y[:, 2:]))
+    seen = rotation_of(y[:, 2:])
+    u_s, v_s, psi = chart_of(np.broadcast_to(np.eye(3), seen.shape), seen)
     v_s, psi = np.unwrap(v_s), np.unwrap(psi)
     psi += 2 * np.pi * np.round((psi_start - psi[0]) / (2 * np.pi))  # as it was given
     jet = surface.jet(u, v)
@@ -36,7 +36,7 @@ def read(
         "state": np.stack([u, v, u_s, v_s, psi], axis=1),
         "contact": contact,
         "centre": contact + radius * up,
-        "orientation": quaternions_of(orientations(frames_of(forms), u_s, v_s, psi)),
+        "orientation": quaternions_of(frames_of(forms) @ seen),
         "object_radius": np.full(len(u), np.nan) if tube is None else np.asarray(tube.at(u, v)[1].R),
         "margin": np.asarray(margin(own, radius)),
         "determinant": np.asarray(controllability(own, radius, u_s)),
@@ -50,8 +50,7 @@ def path_lengths(
     y = solved(np.linspace(0, stop, FINE)).T
     (m11, m12), (_, m22) = model.forms(*((y[1:, :2] + y[:-1, :2]) / 2).T).M
     du, dv = np.diff(y[:, :2], axis=0).T
-    frames = frames_of(model.forms(y[:, 0], y[:, 1]))
-    on_sphere = -np.einsum("nji,nj->ni", rotation_of(y[:, 2:]), frames[..., 2])
+    on_sphere = -rotation_of(y[:, 2:])[:, 2]  # Q^T (-z_o)
     chords = np.linalg.norm(np.diff(on_sphere, axis=0), axis=1)
     arcs = 2 * radius * np.arcsin(np.minimum(chords / 2, 1))
     return float(np.hypot(m11 * du + m12 * dv, m22 * dv).sum()), float(arcs.sum())

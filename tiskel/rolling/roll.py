@@ -10,8 +10,8 @@ from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.endings import Ending, endings
-from tiskel.rolling.equations import margin
-from tiskel.rolling.inputs import Inputs, constant, in_contact_frame
+from tiskel.rolling.equations import frame_turn, margin
+from tiskel.rolling.inputs import Inputs, constant, of_the_object, sphere_axes
 from tiskel.rolling.models import RollingModel, model_of, tube_of
 from tiskel.rolling.reading import path_lengths, read
 from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate
@@ -23,6 +23,7 @@ from tiskel.surfaces.nearest import even_places, nearest_place
 from tiskel.surfaces.tube import V_STOP
 
 USUAL_RADIUS, USUAL_DURATION = 0.25, 10.0  # of the surface's median radius; seconds
+STRIDE = 0.4  # radians that the sphere turns in a step of the solver at most: endings are looked for between steps
 GRID = 72, 200  # places around and along where a sphere that does not fit is tried
 
 
@@ -40,11 +41,11 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     radius = params.radius or USUAL_RADIUS * median_radius(surface)
     model = model_of(surface, params, radius)
     watched = endings(surface, model, params, radius)
-    start = _start(surface, model, params)
+    start = _start(surface, params)
     _check_start(surface, params, radius, start, watched)
     solution = solve_ivp(
         _Rate(model, params, inputs), (0.0, duration_of(params, inputs)), start, method="RK45", rtol=params.rtol,
-        atol=params.atol, max_step=inputs.longest_step, events=watched, dense_output=True,
+        atol=params.atol, max_step=_longest_step(inputs, radius), events=watched, dense_output=True,
     )  # fmt: skip
     stop = float(solution.t[-1])
     t = np.append(np.arange(0, stop - 0.5 / params.rate, 1 / params.rate), stop)
@@ -55,6 +56,13 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
         path_sphere=lengths[1], status=status, reason=reason, evaluations=int(solution.nfev), radius=radius,
         params=params, warnings=_warnings(inputs),
     )  # fmt: skip
+
+
+def _longest_step(inputs: Inputs, radius: float) -> float:
+    """Return the longest step in time that misses neither a row of the inputs nor a place where the run should end."""
+    fastest = float((np.linalg.norm(inputs.values[:, :3], axis=1)
+                     + np.linalg.norm(inputs.values[:, 3:], axis=1) / radius).max())  # fmt: skip
+    return min(inputs.longest_step, STRIDE / fastest) if fastest > 0 else inputs.longest_step
 
 
 def duration_of(params: RollParams, inputs: Inputs) -> float:
@@ -79,7 +87,7 @@ def median_radius(surface: ParametricSurface) -> float:
 
 @dataclass(frozen=True)
 class _Rate:
-    """The right-hand side: derivatives of u_o, v_o and the quaternion."""
+    """The right-hand side: derivatives of u_o, v_o and the quaternion of F^T Q, the sphere as the contact sees it."""
 
     model: RollingModel
     params: RollParams
@@ -88,14 +96,17 @@ class _Rate:
     def __call__(self, t: float, y: Numbers) -> tuple[float, ...]:
         u, v, *q = y.tolist()
         forms = self.model.forms(u, v)
-        omega, velocity = in_contact_frame(self.params.twist, forms, y[2:], *self.inputs.at(t))
+        omega, velocity = self.inputs.at(t)
+        if self.params.twist != "object":
+            turn = self.model.frame(u, v).T if self.params.twist == "world" else sphere_axes(y[2:])
+            omega, velocity = of_the_object(turn, omega, velocity)
         moving = self.model.rates(u, v, forms, omega, velocity)
-        # The sphere turns by -F omega in fixed axes.
-        turning = [-(omega[0] * forms.x[i] + omega[1] * forms.y[i] + omega[2] * forms.z[i]) for i in range(3)]
-        return *moving, *quaternion_rate(turning, q)
+        a, b, c = frame_turn(forms, moving)
+        # In the axes of the contact frame the sphere turns by -omega, and the frame itself turns.
+        return *moving, *quaternion_rate((-omega[0] - a, -omega[1] - b, -omega[2] - c), q)
 
 
-def _start(surface: ParametricSurface, model: RollingModel, params: RollParams) -> Numbers:
+def _start(surface: ParametricSurface, params: RollParams) -> Numbers:
     """Return u_o, v_o and the quaternion to begin with."""
     u, v, u_s, v_s, psi = params.start
     if params.start_at is not None:
@@ -103,8 +114,7 @@ def _start(surface: ParametricSurface, model: RollingModel, params: RollParams) 
     low, high = surface.v_range
     if not low <= v <= high:
         raise TiskelError(f"the start v = {v:g} lies outside the branch, where v is from {low:g} to {high:.6g}")
-    frame = np.array(model.forms(u, v)[:3], float).T
-    return np.array([u, v, *quaternion_of(orientation(frame, u_s, v_s, psi))])
+    return np.array([u, v, *quaternion_of(orientation(np.eye(3), u_s, v_s, psi))])
 
 
 def _check_start(

@@ -42,12 +42,6 @@ def chart_of(frame: Numbers, rotation: Numbers) -> tuple[Scalar, Scalar, Scalar]
     return u_s, v_s, np.arctan2(-across[..., 1], across[..., 0])
 
 
-def orientations(frames: Numbers, u_s: Numbers, v_s: Numbers, psi: Numbers) -> Numbers:
-    """Return Q (n, 3, 3) of many frames and charts."""
-    charts = zip(frames, u_s.tolist(), v_s.tolist(), psi.tolist(), strict=True)
-    return np.array([orientation(*one) for one in charts])
-
-
 def quaternion_of(rotation: Numbers) -> Numbers:
     """Return the unit quaternion (4,) of a rotation (3, 3)."""
     return np.asarray(quaternions_of(rotation[None])[0])
@@ -74,7 +68,7 @@ def rotation_of(q: Numbers) -> Numbers:
 
 
 def quaternion_rate(turning: Any, q: Any) -> tuple[float, float, float, float]:
-    """Return q' = (0, turning) q / 2 for an angular velocity in fixed axes."""
+    """Return q' = (0, turning) q / 2 for an angular velocity in the axes that q turns into."""
     (a, b, c), (w, x, y, z) = turning, q
     return (
         0.5 * (-a * x - b * y - c * z),

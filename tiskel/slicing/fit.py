@@ -21,6 +21,7 @@ from tiskel.surfaces.jets import Jet, Scalar
 from tiskel.surfaces.strips import Strip, fit_strip
 from tiskel.surfaces.tube import V_STOP, Tube
 
+TINY = 1e-300  # for quotients that may be of nothing
 LEAST_SLICES = 4  # fewer do not determine how a surface changes along its curve
 SLAB = 1.5  # spacings that a slab is thick to each side, at least
 REACH = 3.0  # radii of the curve's nearest points: how far a section looks where points have no nodes
@@ -29,7 +30,8 @@ RECENTRINGS, CENTRE_ORDER = 2, 2  # rounds, and the order of the series whose fi
 BRIDGED = 0.1  # weight of the old place of the curve where a section says nothing, and at its ends
 FARTHEST = 0.5  # radii that the curve moves in a round
 JUDGED = 40  # sections that choose the order
-MISSING = 0.3  # share of rejected slices that is worth a warning
+ENDS = (0, 1, 0.0), (-1, -2, V_STOP)  # the sections that say where the surface ends, and its end
+MISSING, OFF = 0.3, 0.1  # share of rejected slices, and misfit, that are worth a warning
 
 
 @dataclass(frozen=True)
@@ -248,7 +250,7 @@ def _recentred(axis: Strip, cutter: _Cutter, count: int) -> tuple[Strip, _Cutter
     terms = np.array([section.series[:3] if len(section.series) else np.zeros(3) for section in sections])
     radius = float(np.median(terms[fitted, 0]))
     move = terms[:, 2] * np.array(frame.y) + terms[:, 1] * np.array(frame.z)
-    move *= np.minimum(1, FARTHEST * radius / np.maximum(np.linalg.norm(move, axis=0), np.finfo(float).tiny))
+    move *= np.minimum(1, FARTHEST * radius / np.maximum(np.linalg.norm(move, axis=0), TINY))
     centres, weights, v = (np.array(frame.p) + move).T, np.where(fitted, 1.0, BRIDGED), places
     if not axis.periodic:  # the curve keeps its ends
         v = np.concatenate([[0.0], v, [V_STOP]])
@@ -293,6 +295,10 @@ def _joined(sections: tuple[Section, ...], intervals: int, closed: bool) -> Stri
     for row, section in zip(series, good, strict=True):
         row[: len(section.series)] = section.series
     v, weights = np.array([section.v for section in good]), np.array([float(section.points) for section in good])
+    if not closed:  # straight on to the ends, half a slice away, where a spline alone would run off
+        ends = [series[i] + (to - v[i]) / (v[i] - v[j]) * (series[i] - series[j]) for i, j, to in ENDS]
+        v, series = np.concatenate([v, [to for _, _, to in ENDS]]), np.concatenate([series, ends])
+        weights = np.concatenate([weights, weights[[i for i, _, _ in ENDS]]])
     return fit_strip(v, series, weights / weights.mean(), intervals, V_STOP, periodic=closed)
 
 
@@ -319,6 +325,7 @@ def _doubts(surface: FittedSurface) -> tuple[str, ...]:
     crossing, thin = surface.tube.spread(u, v), surface.tube.at(u, v)[1].R
     told = {
         f"{lost} of {len(sections)} slices were bridged: {surface.cases()}": lost > MISSING * len(sections),
+        f"the surface is off its points by {surface.error:.0%} of its radius": surface.error > OFF,
         "slices cross where the curve bends sharper than the body is thick; the surface folds there": crossing.min()
         <= 0,
         "the radius is not positive everywhere; the surface folds there": thin.min() <= 0,

@@ -10,6 +10,8 @@ from tiskel.params import SurfaceParams
 from tiskel.slicing.rings import Ring
 
 RIDGE = 1e-7  # weight of the squares of coefficients, times the fourth power of their order: for what a gap leaves open
+WIDE, PROBES, HELD = 0.35, 12, 1e-4  # gaps in radians; places in each; weight of roughness there, per point
+AWAY = 1.5  # the longest of its points that a series may be, and one over the shortest
 HUBER, ROUNDS = 2.5, 4  # deviations beyond which points count less; rounds of weighting
 MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
 OFF_SHARE = 0.1  # of the points that may be further off than a star-shaped section allows
@@ -53,9 +55,12 @@ def fit_section(v: float, ring: Ring, order: int, params: SurfaceParams) -> Sect
     if none.gap > params.gap:
         return replace(none, case=Case.GAP)
     basis = basis_of(ring, v, order)
-    weights = robust_weights(basis, ring.r, order)
-    solution, _ = solved(basis, ring.r, weights, order)
+    weights = robust_weights(ring, basis, order)
+    held = held_in_gaps(ring.u, order)
+    solution, _ = solved(basis, ring.r, weights, held)
     misfit = np.abs(ring.r - basis @ solution)
+    if runs_away(solution, ring.r, order):
+        return replace(none, case=Case.GAP)
     if (misfit > params.uneven * solution[0]).mean() > OFF_SHARE or solution[0] <= 0:
         return replace(none, case=Case.NOT_STAR)
     error = float(np.sqrt(np.average(misfit**2, weights=weights)) / solution[0])
@@ -78,21 +83,49 @@ def basis_of(ring: Ring, v: float, order: int) -> Numbers:
     return np.concatenate([series, (ring.v - v)[:, None] * series[:, :SLOPES]], axis=1)
 
 
-def solved(basis: Numbers, r: Numbers, weights: Numbers, order: int) -> tuple[Numbers, Numbers]:
+def held_in_gaps(u: Numbers, order: int) -> Numbers:
+    """Return (2 N + 1, 2 N + 1) the roughness of a series where there are no points: the mean square of R_uu there.
+
+    Points say nothing of waves that fit into a gap between them; this does.
+    """
+    ordered = np.sort(np.mod(u, 2 * np.pi))
+    widths = np.diff(np.append(ordered, ordered[0] + 2 * np.pi))
+    open_ends = np.flatnonzero(widths > WIDE)
+    places = [ordered[i] + widths[i] * np.linspace(0, 1, PROBES + 2)[1:-1] for i in open_ends]
+    if not places:
+        return np.zeros((2 * order + 1, 2 * order + 1))
+    i, at = np.arange(1, order + 1), np.concatenate(places)[:, None]
+    waves = np.stack([-(i**2) * np.sin(at * i), -(i**2) * np.cos(at * i)], axis=2).reshape(len(at), -1)
+    bend = np.concatenate([np.zeros((len(at), 1)), waves], axis=1)
+    return np.asarray(bend.T @ bend / len(at))
+
+
+def runs_away(solution: Numbers, r: Numbers, order: int) -> bool:
+    """Tell whether a series is far from all distances it was fitted to: it fills a gap with what is not there."""
+    u = np.linspace(0, 2 * np.pi, 20 * order, endpoint=False)
+    i = np.arange(1, order + 1)
+    waves = np.stack([np.sin(u[:, None] * i), np.cos(u[:, None] * i)], axis=2).reshape(len(u), -1)
+    fitted = solution[0] + waves @ solution[1 : 2 * order + 1]
+    return bool(fitted.max() > AWAY * r.max() or fitted.min() < r.min() / AWAY)
+
+
+def solved(basis: Numbers, r: Numbers, weights: Numbers, held: Numbers) -> tuple[Numbers, Numbers]:
     """Return the coefficients of least squares, and the leverage (k,) of every point."""
+    order, count = len(held) // 2, len(held)
     ridge = np.concatenate([[0.0], np.repeat(np.arange(1.0, order + 1) ** 4, 2), np.zeros(SLOPES)])
     ridge[-SLOPES:] = 1e-6 * (basis[:, -SLOPES:] ** 2).sum(axis=0) + 1e-12
     heavy = weights[:, None] * basis
     matrix = basis.T @ heavy + np.diag(RIDGE * len(r) * ridge)
+    matrix[:count, :count] += HELD * len(r) * held
     inverse = np.linalg.inv(matrix)
     return inverse @ (heavy.T @ r), np.einsum("kc,cd,kd->k", basis, inverse, heavy)
 
 
-def robust_weights(basis: Numbers, r: Numbers, order: int) -> Numbers:
+def robust_weights(ring: Ring, basis: Numbers, order: int) -> Numbers:
     """Return (k,) the weights of points after Huber: 1, or less for those that are far off."""
-    weights = np.ones(len(r))
+    r, weights, held = ring.r, np.ones(len(ring.r)), held_in_gaps(ring.u, order)
     for _ in range(ROUNDS):
-        misfit = np.abs(r - basis @ solved(basis, r, weights, order)[0])
+        misfit = np.abs(r - basis @ solved(basis, r, weights, held)[0])
         scale = max(HUBER * MAD * float(np.median(misfit)), 1e-12 * float(r.max()))
         weights = 1 / np.maximum(1, misfit / scale)
     return np.asarray(weights)
@@ -101,7 +134,7 @@ def robust_weights(basis: Numbers, r: Numbers, order: int) -> Numbers:
 def left_out_error(v: float, ring: Ring, order: int) -> float:
     """Return the mean square of what each point is off the series through the others, over the mean radius."""
     basis = basis_of(ring, v, order)
-    weights = robust_weights(basis, ring.r, order)
-    solution, leverage = solved(basis, ring.r, weights, order)
+    weights = robust_weights(ring, basis, order)
+    solution, leverage = solved(basis, ring.r, weights, held_in_gaps(ring.u, order))
     off = (ring.r - basis @ solution) / np.maximum(1 - leverage, 0.05)
     return float(np.average(off**2, weights=weights) / solution[0] ** 2)
