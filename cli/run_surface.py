@@ -14,7 +14,7 @@ from tiskel.params import SurfaceParams
 if TYPE_CHECKING:
     from tiskel.rolling.trajectory import Trajectory
     from tiskel.skeleton import Skeleton
-    from tiskel.slicing.fit import FittedSurface, Surfaces
+    from tiskel.slicing.fitted import FittedSurface, Surfaces
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from tiskel.errors import TiskelError
 
 if TYPE_CHECKING:
     from tiskel.params import SurfaceParams
-    from tiskel.slicing.fit import Surfaces
+    from tiskel.slicing.fitted import Surfaces
 
 CurveFile = Annotated[
     Path | None,

@@ -46,9 +46,9 @@ if TYPE_CHECKING:
     from tiskel.shapes.make import shape_graph as shape_graph
     from tiskel.skeleton import Skeleton as Skeleton
     from tiskel.skeleton import extract_skeleton as extract_skeleton
-    from tiskel.slicing.fit import FittedSurface as FittedSurface
-    from tiskel.slicing.fit import Surfaces as Surfaces
     from tiskel.slicing.fit import fit_surface as fit_surface
+    from tiskel.slicing.fitted import FittedSurface as FittedSurface
+    from tiskel.slicing.fitted import Surfaces as Surfaces
     from tiskel.stability import Stability as Stability
     from tiskel.stability import assess_stability as assess_stability
     from tiskel.trace import Status as Status
@@ -60,7 +60,7 @@ _HOME = {
     "Contraction": "contraction",
     "ContractionParams": "params",
     "Curve": "io.curves",
-    "FittedSurface": "slicing.fit",
+    "FittedSurface": "slicing.fitted",
     "Inputs": "rolling.inputs",
     "MetricParams": "params",
     "Quality": "quality.result",
@@ -74,7 +74,7 @@ _HOME = {
     "Status": "trace",
     "StepRecord": "trace",
     "SurfaceParams": "params",
-    "Surfaces": "slicing.fit",
+    "Surfaces": "slicing.fitted",
     "TiskelError": "errors",
     "Trajectory": "rolling.trajectory",
     "assess_stability": "stability",

@@ -26,7 +26,7 @@ from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.streams import read_bytes, write_bytes
 from tiskel.params import SurfaceParams
-from tiskel.slicing.fit import FittedSurface, Surfaces
+from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.mesh import mesh_report
 from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.strips import DEGREE, Strip

@@ -11,7 +11,7 @@ from tiskel.errors import TiskelError
 from tiskel.pictures.canvas import CLOUD, CURVE, INK, broad_view, new_figure
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
-from tiskel.slicing.fit import FittedSurface
+from tiskel.slicing.fitted import FittedSurface
 
 FORMATS = ("gif", "html")
 FRAMES, SECONDS, SIZE, DPI = 90, 9.0, 5.0, 80  # of a GIF; inches

@@ -9,7 +9,7 @@ from tiskel.arrays import Numbers
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
-from tiskel.slicing.fit import FittedSurface
+from tiskel.slicing.fitted import FittedSurface
 from tiskel.surfaces.tube import V_STOP
 
 COLOURS, STYLES = (CURVE, POINTS), ("-", "--")  # of the first and the second run

@@ -6,7 +6,7 @@ import numpy as np
 
 from tiskel.arrays import Points
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
-from tiskel.slicing.fit import FittedSurface, Surfaces
+from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.rings import around
 from tiskel.slicing.sections import Case
 from tiskel.surfaces.tube import V_STOP

@@ -12,7 +12,7 @@ from tiskel.params import RollParams
 from tiskel.rolling.equations import margin
 from tiskel.rolling.models import RollingModel, tube_of
 from tiskel.rolling.trajectory import RollStatus
-from tiskel.slicing.fit import FittedSurface
+from tiskel.slicing.fitted import FittedSurface
 from tiskel.surfaces.forms import forms_of
 from tiskel.surfaces.jets import ParametricSurface
 

@@ -9,7 +9,7 @@ from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Pair, Triple, local_object_rates, object_rates
-from tiskel.slicing.fit import FittedSurface
+from tiskel.slicing.fitted import FittedSurface
 from tiskel.surfaces.forms import Forms, forms_of
 from tiskel.surfaces.jets import Jet, ParametricSurface, Scalar
 from tiskel.surfaces.tube import Tube

@@ -16,7 +16,7 @@ from tiskel.rolling.models import RollingModel, model_of, tube_of
 from tiskel.rolling.reading import path_lengths, read
 from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate
 from tiskel.rolling.trajectory import RollStatus, Trajectory
-from tiskel.slicing.fit import FittedSurface
+from tiskel.slicing.fitted import FittedSurface
 from tiskel.surfaces.forms import forms_of
 from tiskel.surfaces.jets import ParametricSurface
 from tiskel.surfaces.nearest import even_places, nearest_place

@@ -1,7 +1,6 @@
 """The stage ``slice``: a skeleton and its cloud in, a Fourier surface for every branch out."""
 
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,11 +13,12 @@ from tiskel.params import SurfaceParams
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
 from tiskel.slicing.field import fit_field
+from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
 from tiskel.slicing.rings import Ring, around, cut, frames_along, spacing_of
-from tiskel.slicing.sections import Case, Section, fit_section, left_out_error
-from tiskel.surfaces.jets import Jet, Scalar
-from tiskel.surfaces.strips import Strip, fit_strip
+from tiskel.slicing.sections import Case, Section, fit_section
+from tiskel.slicing.series import chosen_order, fit_sections, joined_series
+from tiskel.surfaces.strips import Strip
 from tiskel.surfaces.tube import V_STOP, Tube
 
 TINY = 1e-300  # for quotients that may be of nothing
@@ -29,86 +29,7 @@ INTERVALS = 4, 200  # of the splines; one for every two slices
 RECENTRINGS, CENTRE_ORDER = 2, 2  # rounds, and the order of the series whose first terms say where the middle is
 BRIDGED = 0.1  # weight of the old place of the curve where a section says nothing, and at its ends
 FARTHEST = 0.5  # radii that the curve moves in a round
-JUDGED = 40  # sections that choose the order
-ENDS = (0, 1, 0.0), (-1, -2, V_STOP)  # the sections that say where the surface ends, and its end
 MISSING, OFF = 0.3, 0.1  # share of rejected slices, and misfit, that are worth a warning
-
-
-@dataclass(frozen=True)
-class FittedSurface:
-    """A Fourier surface along one path of a skeleton; lengths in the input's unit.
-
-    Attributes
-    ----------
-    tube : the surface itself. name : of the branch. nodes : (k,) of the path; a closed one repeats its first.
-    frame : "m", "normal" or "rotation-minimising"; note : why it is not the one asked for.
-    sections : every slice, fitted or rejected; trimmed : the cases of those beyond both ends of the surface.
-    rows : (p,) rows in the cloud that the surface was fitted to; error : RMS of their misfit over the mean radius.
-    radius : median of the mean radii. length : of the skeleton curve. cloud : (n, 3), all of it.
-    warnings : what a user should know.
-    """
-
-    tube: Tube
-    name: str
-    nodes: Indices
-    frame: str
-    sections: tuple[Section, ...]
-    trimmed: dict[str, int]
-    rows: Indices
-    error: float
-    radius: float
-    length: float
-    cloud: Points
-    note: str
-    warnings: tuple[str, ...]
-
-    @property
-    def v_range(self) -> tuple[float, float]:
-        return self.tube.v_range
-
-    @property
-    def periods(self) -> tuple[float | None, float | None]:
-        return self.tube.periods
-
-    @property
-    def order(self) -> int:
-        """The order of the Fourier series."""
-        return int(self.tube.series.coefficients.shape[1]) // 2
-
-    def jet(self, u: Scalar, v: Scalar) -> Jet:
-        return self.tube.jet(u, v)
-
-    def cases(self) -> dict[str, int]:
-        """Return how many slices there are of each case."""
-        return dict(Counter(section.case.value for section in self.sections) + Counter(self.trimmed))
-
-
-@dataclass(frozen=True)
-class Surfaces:
-    """The surfaces of a skeleton, by place or in order; ``rejected`` says of the other branches why not."""
-
-    surfaces: tuple[FittedSurface, ...]
-    rejected: dict[str, str]
-    cloud: Points
-
-    def __len__(self) -> int:
-        return len(self.surfaces)
-
-    def __getitem__(self, place: int) -> FittedSurface:
-        return self.surfaces[place]
-
-    def __iter__(self) -> Iterator[FittedSurface]:
-        return iter(self.surfaces)
-
-    def named(self, name: str | None) -> FittedSurface:
-        """Return the surface of a branch, without a name the longest."""
-        if name is None:
-            return max(self.surfaces, key=lambda s: s.length)
-        known = [s.name for s in self.surfaces]
-        if name not in known:
-            why = f": {self.rejected[name]}" if name in self.rejected else ""
-            raise TiskelError(f"there is no surface of branch {name}{why}; there are {', '.join(known)}")
-        return self.surfaces[known.index(name)]
 
 
 class _Rejected(Exception):
@@ -185,18 +106,21 @@ def _fitted(
     for _ in range(RECENTRINGS if params.recentre else 0):
         axis, cutter = _recentred(axis, cutter, count)
     trimmed: Counter[str] = Counter()
+    order = None
     while True:
         intervals = int(np.clip(count // 2, *INTERVALS))
         axis = evened(axis, intervals) if axis.intervals != intervals else axis
         field, frame, note = cutter.field(axis)
         rings = cutter.rings(axis, field, places_of(count))
-        sections = _sections(rings, places_of(count), params)
+        pairs = list(zip(places_of(count).tolist(), rings, strict=True))
+        order = order or chosen_order(pairs, params)
+        sections = fit_sections(pairs, order, params)
         first, last = _span(sections)
         if path.closed or last - first == count:
             break
         trimmed += Counter(section.case.value for section in (*sections[:first], *sections[last:]))
         axis, count = evened(axis, intervals, first / count * V_STOP, last / count * V_STOP), last - first
-    tube = Tube(axis, field, _joined(sections, intervals, path.closed))
+    tube = Tube(axis, field, joined_series(sections, intervals, path.closed))
     rows, error = _misfit(tube, rings, sections)
     fitted = FittedSurface(
         tube, path.name, path.nodes, frame, sections, dict(trimmed), near[rows], error,
@@ -252,54 +176,13 @@ def _recentred(axis: Strip, cutter: _Cutter, count: int) -> tuple[Strip, _Cutter
     move = terms[:, 2] * np.array(frame.y) + terms[:, 1] * np.array(frame.z)
     move *= np.minimum(1, FARTHEST * radius / np.maximum(np.linalg.norm(move, axis=0), TINY))
     centres, weights, v = (np.array(frame.p) + move).T, np.where(fitted, 1.0, BRIDGED), places
-    if not axis.periodic:  # the curve keeps its ends
+    if not axis.periodic:  # the ends move with the slices next to them
         v = np.concatenate([[0.0], v, [V_STOP]])
-        centres = np.concatenate([axis.along(v[:1])[:, 0], centres, axis.along(v[-1:])[:, 0]])
+        first, last = (axis.along(v[[end]])[:, 0] + move.T[[end]] for end in (0, -1))
+        centres = np.concatenate([first, centres, last])
         weights = np.concatenate([[BRIDGED], weights, [BRIDGED]])
     intervals = int(np.clip(count // 2, *INTERVALS))
     return fit_axis(centres, weights, radius, intervals, closed=axis.periodic, v=v), replace(cutter, radius=radius)
-
-
-def _sections(rings: list[Ring], places: Numbers, params: SurfaceParams) -> tuple[Section, ...]:
-    """Return the sections, all of one order, which cross-validation chooses, or each of its own, as published."""
-    pairs = list(zip(places.tolist(), rings, strict=True))
-    if params.order_rule == "published":
-        return tuple(_published(v, ring, params) for v, ring in pairs)
-    tried = [fit_section(v, ring, params.least_order, params) for v, ring in pairs]
-    good = [pair for pair, section in zip(pairs, tried, strict=True) if section.case is Case.FITTED]
-    judged = good[:: -(-len(good) // JUDGED) or 1]
-    order, least = params.least_order, _judged(judged, params.least_order)
-    while judged and order < params.most_order and (error := _judged(judged, order + 1)) < least:
-        order, least = order + 1, error
-    return tuple(fit_section(v, ring, order, params) for v, ring in pairs)
-
-
-def _judged(pairs: list[tuple[float, Ring]], order: int) -> float:
-    enough = [pair for pair in pairs if len(pair[1].u) > 2 * order + 5]
-    return float(np.mean([left_out_error(v, ring, order) for v, ring in enough])) if enough else np.inf
-
-
-def _published(v: float, ring: Ring, params: SurfaceParams) -> Section:
-    """Return the section of the lowest order whose RMS error is small enough, or of the highest."""
-    for order in range(params.least_order, params.most_order + 1):
-        section = fit_section(v, ring, order, params)
-        if section.case is not Case.FITTED or section.error * section.series[0] < params.fit_error:
-            break
-    return section
-
-
-def _joined(sections: tuple[Section, ...], intervals: int, closed: bool) -> Strip:
-    """Return the coefficients as functions of v, over rejected slices as smooth as elsewhere."""
-    good = [section for section in sections if section.case is Case.FITTED]
-    series = np.zeros((len(good), max(len(section.series) for section in good)))
-    for row, section in zip(series, good, strict=True):
-        row[: len(section.series)] = section.series
-    v, weights = np.array([section.v for section in good]), np.array([float(section.points) for section in good])
-    if not closed:  # straight on to the ends, half a slice away, where a spline alone would run off
-        ends = [series[i] + (to - v[i]) / (v[i] - v[j]) * (series[i] - series[j]) for i, j, to in ENDS]
-        v, series = np.concatenate([v, [to for _, _, to in ENDS]]), np.concatenate([series, ends])
-        weights = np.concatenate([weights, weights[[i for i, _, _ in ENDS]]])
-    return fit_strip(v, series, weights / weights.mean(), intervals, V_STOP, periodic=closed)
 
 
 def _why(sections: "list[Section] | tuple[Section, ...]") -> str:

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.quality.ellipse import fit_ellipse
-from tiskel.slicing.fit import FittedSurface
+from tiskel.slicing.fitted import FittedSurface
 from tiskel.slicing.sections import Section
 from tiskel.surfaces.strips import Strip
 from tiskel.surfaces.tube import V_STOP, Tube, radius_of

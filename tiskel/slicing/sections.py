@@ -57,7 +57,7 @@ def fit_section(v: float, ring: Ring, order: int, params: SurfaceParams) -> Sect
     basis = basis_of(ring, v, order)
     weights = robust_weights(ring, basis, order)
     held = held_in_gaps(ring.u, order)
-    solution, _ = solved(basis, ring.r, weights, held)
+    solution = solved(basis, ring.r, weights, held)
     misfit = np.abs(ring.r - basis @ solution)
     if runs_away(solution, ring.r, order):
         return replace(none, case=Case.GAP)
@@ -109,23 +109,27 @@ def runs_away(solution: Numbers, r: Numbers, order: int) -> bool:
     return bool(fitted.max() > AWAY * r.max() or fitted.min() < r.min() / AWAY)
 
 
-def solved(basis: Numbers, r: Numbers, weights: Numbers, held: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the coefficients of least squares, and the leverage (k,) of every point."""
+def normal_matrix(basis: Numbers, weights: Numbers, held: Numbers) -> Numbers:
+    """Return the matrix of weighted least squares, with what holds the coefficients that no point determines."""
     order, count = len(held) // 2, len(held)
     ridge = np.concatenate([[0.0], np.repeat(np.arange(1.0, order + 1) ** 4, 2), np.zeros(SLOPES)])
     ridge[-SLOPES:] = 1e-6 * (basis[:, -SLOPES:] ** 2).sum(axis=0) + 1e-12
-    heavy = weights[:, None] * basis
-    matrix = basis.T @ heavy + np.diag(RIDGE * len(r) * ridge)
-    matrix[:count, :count] += HELD * len(r) * held
-    inverse = np.linalg.inv(matrix)
-    return inverse @ (heavy.T @ r), np.einsum("kc,cd,kd->k", basis, inverse, heavy)
+    matrix = basis.T @ (weights[:, None] * basis)
+    matrix[np.diag_indices(len(ridge))] += RIDGE * len(basis) * ridge
+    matrix[:count, :count] += HELD * len(basis) * held
+    return np.asarray(matrix)
+
+
+def solved(basis: Numbers, r: Numbers, weights: Numbers, held: Numbers) -> Numbers:
+    """Return the coefficients of weighted least squares."""
+    return np.linalg.solve(normal_matrix(basis, weights, held), basis.T @ (weights * r))
 
 
 def robust_weights(ring: Ring, basis: Numbers, order: int) -> Numbers:
     """Return (k,) the weights of points after Huber: 1, or less for those that are far off."""
     r, weights, held = ring.r, np.ones(len(ring.r)), held_in_gaps(ring.u, order)
     for _ in range(ROUNDS):
-        misfit = np.abs(r - basis @ solved(basis, r, weights, held)[0])
+        misfit = np.abs(r - basis @ solved(basis, r, weights, held))
         scale = max(HUBER * MAD * float(np.median(misfit)), 1e-12 * float(r.max()))
         weights = 1 / np.maximum(1, misfit / scale)
     return np.asarray(weights)
@@ -135,6 +139,8 @@ def left_out_error(v: float, ring: Ring, order: int) -> float:
     """Return the mean square of what each point is off the series through the others, over the mean radius."""
     basis = basis_of(ring, v, order)
     weights = robust_weights(ring, basis, order)
-    solution, leverage = solved(basis, ring.r, weights, held_in_gaps(ring.u, order))
+    held = held_in_gaps(ring.u, order)
+    solution = solved(basis, ring.r, weights, held)
+    leverage = weights * (basis * np.linalg.solve(normal_matrix(basis, weights, held), basis.T).T).sum(axis=1)
     off = (ring.r - basis @ solution) / np.maximum(1 - leverage, 0.05)
     return float(np.average(off**2, weights=weights) / solution[0] ** 2)

@@ -1,0 +1,58 @@
+"""From sections to one series along the curve: its order, and coefficients that are smooth in v."""
+
+import numpy as np
+
+from tiskel.params import SurfaceParams
+from tiskel.slicing.rings import Ring
+from tiskel.slicing.sections import Case, Section, fit_section, left_out_error
+from tiskel.surfaces.strips import Strip, fit_strip
+from tiskel.surfaces.tube import V_STOP
+
+JUDGED = 30  # sections that choose the order
+ENDS = (0, 1, 0.0), (-1, -2, V_STOP)  # the sections that say where the surface ends, and its end
+
+
+def chosen_order(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> int:
+    """Return the order up to which points that are left out are met better and better, in the mean of all slices."""
+    tried = [fit_section(v, ring, params.least_order, params) for v, ring in pairs]
+    good = [pair for pair, section in zip(pairs, tried, strict=True) if section.case is Case.FITTED]
+    judged = good[:: -(-len(good) // JUDGED) or 1]
+    order, least = params.least_order, _judged(judged, params.least_order)
+    while judged and order < params.most_order and (error := _judged(judged, order + 1)) < least:
+        order, least = order + 1, error
+    return order
+
+
+def fit_sections(pairs: list[tuple[float, Ring]], order: int, params: SurfaceParams) -> tuple[Section, ...]:
+    """Return the sections, all of one order, or each of its own, as published."""
+    if params.order_rule == "published":
+        return tuple(_published(v, ring, params) for v, ring in pairs)
+    return tuple(fit_section(v, ring, order, params) for v, ring in pairs)
+
+
+def _judged(pairs: list[tuple[float, Ring]], order: int) -> float:
+    enough = [pair for pair in pairs if len(pair[1].u) > 2 * order + 5]
+    return float(np.mean([left_out_error(v, ring, order) for v, ring in enough])) if enough else np.inf
+
+
+def _published(v: float, ring: Ring, params: SurfaceParams) -> Section:
+    """Return the section of the lowest order whose RMS error is small enough, or of the highest."""
+    for order in range(params.least_order, params.most_order + 1):
+        section = fit_section(v, ring, order, params)
+        if section.case is not Case.FITTED or section.error * section.series[0] < params.fit_error:
+            break
+    return section
+
+
+def joined_series(sections: tuple[Section, ...], intervals: int, closed: bool) -> Strip:
+    """Return the coefficients as functions of v, over rejected slices as smooth as elsewhere."""
+    good = [section for section in sections if section.case is Case.FITTED]
+    series = np.zeros((len(good), max(len(section.series) for section in good)))
+    for row, section in zip(series, good, strict=True):
+        row[: len(section.series)] = section.series
+    v, weights = np.array([section.v for section in good]), np.array([float(section.points) for section in good])
+    if not closed:  # straight on to the ends, half a slice away, where a spline alone would run off
+        ends = [series[i] + (to - v[i]) / (v[i] - v[j]) * (series[i] - series[j]) for i, j, to in ENDS]
+        v, series = np.concatenate([v, [to for _, _, to in ENDS]]), np.concatenate([series, ends])
+        weights = np.concatenate([weights, weights[[i for i, _, _ in ENDS]]])
+    return fit_strip(v, series, weights / weights.mean(), intervals, V_STOP, periodic=closed)
