@@ -10,12 +10,14 @@ from scipy.integrate import solve_ivp
 
 from reference.rolling import pose_over_time
 from reference.tubes import bent_tube, straight_tube, tube
+from tiskel import FittedSurface, contract, extract_skeleton, fit_surface
 from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import local_rates
 from tiskel.rolling.inputs import Inputs
 from tiskel.rolling.models import model_of
+from tiskel.rolling.printed import shape_operators
 from tiskel.rolling.roll import roll
 from tiskel.rolling.sphere import orientation, rotation_of
 from tiskel.rolling.trajectory import RollStatus
@@ -248,3 +250,56 @@ def test_the_summary_holds_plain_finite_numbers() -> None:
     assert document["status"] == "finished"
     assert document["least_margin"] > 0
     assert document["least_determinant"] > 0
+
+
+@pytest.fixture(scope="module")
+def capsule_surface(capsule: Numbers) -> FittedSurface:
+    return fit_surface(extract_skeleton(contract(capsule)))[0]
+
+
+def test_a_run_ends_where_the_sphere_meets_another_part_of_the_cloud(capsule_surface: FittedSurface) -> None:
+    """A wall across a rod of radius 0.2 at z = 0.3: the sphere of 0.1 stops about 0.1 before it."""
+    x, y = np.meshgrid(np.linspace(-0.6, 0.6, 61), np.linspace(-0.6, 0.6, 61))
+    wall = np.stack([x.ravel(), y.ravel(), np.full(x.size, 0.3)], axis=1)
+    wall = wall[np.hypot(wall[:, 0], wall[:, 1]) > 0.2]
+    walled = replace(capsule_surface, cloud=np.concatenate([capsule_surface.cloud, wall]))
+    up = 1.0 if capsule_surface.tube.curve(np.array([1.0]))[0, 2] < 0 else -1.0
+    p = RollParams(radius=0.1, omega=(up, 0, 0), start=(0.3, pi / 2, 0, 0, 0), duration=30.0)
+    r = roll(walled, p)
+    assert r.status is RollStatus.MET
+    # Met is what is deeper in than 5 % of the radius; the event is found to a step of the root finder.
+    assert r.centre[-1, 2] == pytest.approx(0.3 - 0.095, abs=0.005)
+    assert roll(walled, replace(p, meet=False)).status is RollStatus.LEFT
+    with pytest.raises(TiskelError, match="points away from the contact lie in it; start elsewhere"):
+        roll(walled, replace(p, start_at=(0.2, 0.0, 0.28)))
+
+
+def test_rolling_over_a_fitted_surface_is_rolling_over_the_body(capsule_surface: FittedSurface) -> None:
+    """Around a rod of radius 0.2: u' = -R_s omega_y / (R + R_s), to the accuracy of the fit."""
+    r = roll(capsule_surface, RollParams(radius=0.1, omega=(0, 1, 0), duration=5.0, **SHARP))
+    assert r.state[-1, 0] - r.state[0, 0] == pytest.approx(-0.1 * 5 / 0.3, rel=5e-3)
+    np.testing.assert_allclose(np.hypot(*r.contact[:, :2].T), 0.2, rtol=5e-3)
+
+
+def test_the_printed_curvature_is_a_coarse_one(capsule_surface: FittedSurface) -> None:
+    """Normals by principal components of 20 of 800 points: right to a tenth or so, and labelled."""
+    p = RollParams(radius=0.1, normals="pca", duration=2.0)
+    r, ours = roll(capsule_surface, p), roll(capsule_surface, replace(p, normals="surface"))
+    assert r.as_dict()["normals"] == "pca"
+    moved, true = (abs(one.state[-1, 0] - one.state[0, 0]) for one in (r, ours))
+    assert moved == pytest.approx(true, rel=0.15)
+    assert moved != true
+    with pytest.raises(TiskelError, match="fitted to a cloud"):
+        roll(BENT, p)
+
+
+def test_operators_of_neighbours_find_the_curvature_of_a_dense_sphere() -> None:
+    directions = np.random.default_rng(1).normal(size=(20000, 3))
+    ball = 2 * directions / np.linalg.norm(directions, axis=1)[:, None]
+    frames = np.broadcast_to(np.eye(3), (1, 3, 3))
+    operator = shape_operators(ball, np.array([[0.0, 0, 2.0]]), frames, 30)[0]
+    np.testing.assert_allclose(operator, np.diag([0.5, 0.5, 0]), atol=0.03)  # normals of 30 neighbours vary by 1e-2
+
+
+def test_the_usual_sphere_is_a_quarter_of_the_branch(capsule_surface: FittedSurface) -> None:
+    assert roll(capsule_surface, RollParams(duration=0.1)).radius == pytest.approx(0.05, rel=0.02)

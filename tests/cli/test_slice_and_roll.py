@@ -1,0 +1,198 @@
+"""slice and roll through real processes: files, pipes, tables, pictures, and how bad input ends."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reference.fixtures import Runner, one_error_line
+from tiskel import contract, extract_skeleton, make_shape, read_surfaces, shape_graph, write_skeleton
+from tiskel.io.roll_files import COLUMNS
+from tiskel.shapes.make import ShapeParams
+
+
+@pytest.fixture(scope="module")
+def stage(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A skeleton file of a bent rod."""
+    cloud = make_shape(shape_graph("banana"), ShapeParams(count=1500))[0]
+    path = tmp_path_factory.mktemp("stage") / "s.ply"
+    write_skeleton(path, extract_skeleton(contract(cloud)))
+    return path.read_bytes()
+
+
+@pytest.fixture
+def skeleton(stage: bytes, tmp_path: Path) -> Path:
+    (tmp_path / "s.ply").write_bytes(stage)
+    return tmp_path / "s.ply"
+
+
+def table(data: bytes) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(data.decode())))
+
+
+def test_slice_and_roll_chain_through_pipes(tiskel: Runner, stage: bytes) -> None:
+    sliced = tiskel("slice", "-", data=stage)
+    assert sliced.returncode == 0
+    assert json.loads(sliced.stdout)["format"] == 1
+    assert b"branch 0: length" in sliced.stderr
+    assert b"fitted" in sliced.stderr
+    rolled = tiskel("roll", "-", "--omega", "0,1,0", "--duration", 1, data=sliced.stdout)
+    assert rolled.returncode == 0
+    rows = table(rolled.stdout)
+    assert list(rows[0]) == list(COLUMNS)
+    assert len(rows) == 101
+    assert float(rows[-1]["t"]) == 1.0
+    assert b"finished" in rolled.stderr
+
+
+def test_every_file_of_slice_is_written(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
+    words = ("-o", "f.json", "--mesh", "m.ply", "--caps", "--csv", "t.csv", "--plot", "p.png")
+    done = tiskel("slice", skeleton.name, *words)
+    assert done.returncode == 0
+    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "m.ply").read_bytes().startswith(b"ply")
+    rows = table((tmp_path / "t.csv").read_bytes())
+    assert float(rows[len(rows) // 2]["equivalent_radius"]) == pytest.approx(0.22, abs=0.01)
+    assert read_surfaces(tmp_path / "f.json")[0].radius == pytest.approx(0.187, abs=0.01)
+
+
+def test_every_file_of_roll_is_written(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
+    tiskel("slice", skeleton.name, "-o", "f.json")
+    words = ("-o", "t.csv", "--json", "--plot", "p.svg", "--model", "both", "--duration", 2, "--rate", 10)
+    done = tiskel("roll", "f.json", *words, "--animate", "a.html")
+    assert done.returncode == 0
+    document = json.loads(done.stdout)
+    assert [run["model"] for run in document["runs"]] == ["global", "local"]
+    assert document["runs"][0]["path_difference"] == pytest.approx(0, abs=1e-4)
+    rows = table((tmp_path / "t.csv").read_bytes())
+    assert [row["model"] for row in rows].count("local") == 21
+    assert b"<svg" in (tmp_path / "p.svg").read_bytes()
+    page = (tmp_path / "a.html").read_text()
+    assert '"rotation"' in page
+    assert "http" not in page
+    assert tiskel("roll", "f.json", "-o", "t.csv", "--duration", 0.3, "--animate", "a.gif").returncode == 0
+    assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
+    wrong = tiskel("roll", "f.json", "-o", "t.csv", "--animate", "a.mp4")
+    assert (wrong.returncode, b"gif, html" in wrong.stderr) == (1, True)
+
+
+def test_the_same_bytes_on_one_thread_and_two(tiskel: Runner, stage: bytes) -> None:
+    made = [tiskel("slice", "-", "--threads", n, data=stage).stdout for n in (1, 2, 2)]
+    assert made[0] == made[1] == made[2]
+    rolled = [tiskel("roll", "-", "--threads", n, "--omega", "1,1,0", data=made[0]).stdout for n in (1, 2)]
+    assert rolled[0] == rolled[1] != b""
+
+
+def test_options_reach_the_library(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
+    words = ("--branch", "longest", "--interval", 0.04, "--m", "1,0,2", "--order-rule", "published", "--no-recentre")
+    assert tiskel("slice", skeleton.name, "-o", "f.json", *words).returncode == 0
+    document = json.loads((tmp_path / "f.json").read_bytes())
+    params = document["params"]
+    assert (params["branch"], params["interval"], params["m"]) == ("longest", 0.04, [1, 0, 2])
+    assert (params["order_rule"], params["recentre"]) == ("published", False)
+    assert len(document["surfaces"][0]["sections"]) < 30
+    words = (
+        "--side",
+        "inside",
+        "--radius",
+        0.05,
+        "--velocity",
+        "0.01,0,0",
+        "--twist",
+        "sphere",
+        "--start",
+        "0,pi/3,0,0,-pi",
+    )
+    run = json.loads(tiskel("roll", "f.json", "--json", "--duration", 1, *words).stdout)["runs"][0]
+    assert (run["side"], run["radius"], run["twist"], run["time"]) == ("inside", 0.05, "sphere", 1.0)
+    assert run["start"] == pytest.approx([0, np.pi / 3, 0, 0, -np.pi], abs=1e-12)
+    near = tiskel("roll", "f.json", "--json", "--duration", 1, "--start-at", "1.2,0,0")
+    assert json.loads(near.stdout)["runs"][0]["start"][1] == pytest.approx(np.pi / 2, abs=0.1)
+
+
+def test_a_curve_from_elsewhere(tiskel: Runner, tmp_path: Path) -> None:
+    tiskel("shape", "tunnel", "-n", 1500, "-o", "tube.ply", "--skeleton", "curve.json")
+    done = tiskel("slice", "tube.ply", "--curve", "curve.json", "-o", "f.json")
+    assert done.returncode == 0
+    assert read_surfaces(tmp_path / "f.json")[0].radius == pytest.approx(0.25, abs=0.005)
+    both = tiskel("slice", "-", "--curve", "-")
+    assert (both.returncode, b"cannot both come" in both.stderr) == (1, True)
+
+
+def test_inputs_from_a_table(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
+    tiskel("slice", skeleton.name, "-o", "f.json")
+    (tmp_path / "w.csv").write_text("t,wx,wy,wz\n0,0,1,0\n1,0,1,0\n2,0,0,0\n")
+    done = tiskel("roll", "f.json", "--inputs", "w.csv", "--json")
+    assert json.loads(done.stdout)["runs"][0]["time"] == 2.0
+    rows = ["t,wx,wy,wz", *(f"{t / 10},1,0,0" for t in range(10)), "5,1,0,0"]
+    (tmp_path / "w.csv").write_text("\n".join(rows))
+    gap = tiskel("roll", "f.json", "--inputs", "w.csv", "-o", "t.csv")
+    assert gap.returncode == 0
+    assert b"no row between t = 0.9 and 5" in gap.stderr
+    assert tiskel("roll", "f.json", "--inputs", "w.csv", "-o", "t.csv", "--strict").returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t,wx,wy\n0,1,2\n", "no column wz"),
+        ("t,wx,wy,wz\n", "no row below its header"),
+        ("t,wx,wy,wz\n0,1,,3\n", "wy is missing in row 1"),
+        ("t,wx,wy,wz\n0,1,x,3\n", "'x' is no number in row 1"),
+        ("t,wx,wy,wz\n0,1,2,3\n1,1,2\n", "wz is missing in row 2"),
+        ("t,wx,wy,wz\n1,0,0,0\n0,0,0,0\n", "times must rise, row 2 has t = 0 after 1; sort them"),
+        ("", "no column t"),
+    ],
+)
+def test_bad_tables_end_with_one_line(text: str, said: str, tiskel: Runner, tmp_path: Path) -> None:
+    (tmp_path / "w.csv").write_text(text)
+    done = tiskel("roll", "none.json", "--inputs", "w.csv")
+    assert said in one_error_line(done)
+
+
+def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
+    tiskel("slice", skeleton.name, "-o", "f.json")
+    newer = {**json.loads((tmp_path / "f.json").read_bytes()), "format": 9}
+    (tmp_path / "newer.json").write_text(json.dumps(newer))
+    for words, said in (
+        (("newer.json",), "format 9, this tiskel reads up to 1; install a newer tiskel"),
+        (("s.ply",), "is not a surface file"),
+        (("f.json", "--side", "inside", "--radius", 0.5), "it fits nowhere, a sphere of less than"),
+        (("f.json", "--start", "0,4,0,0,0"), "v = 4 lies outside the branch"),
+        (("f.json", "--start", "0,4"), "--start needs 5 numbers"),
+        (("f.json", "--branch", "thumb"), "no surface of branch thumb; there are 0"),
+        (("f.json", "--model", "own"), "--model must be one of global, local, both"),
+        (("f.json", "--omega", "a,b,c"), "--omega needs 3 numbers"),
+        (("f.json", "--velocity", "0,0,1"), "velocity along the normal must be 0"),
+    ):
+        assert said in one_error_line(tiskel("roll", *words))
+    still = tiskel("roll", "f.json", "--omega", "0,0,0", "--json", "--duration", 1)
+    assert still.returncode == 0
+    assert "stays where it is" in json.loads(still.stdout)["runs"][0]["warnings"][0]
+    for words, said in (
+        (("s.ply", "--interval", 0.9), "too short for 4 slices"),
+        (("s.ply", "--branch", 7), "there is no branch 7"),
+        (("s.ply", "--m", "up"), "--m needs 3 numbers"),
+        (("f.json",), "is not a valid PLY"),
+    ):
+        assert said in one_error_line(tiskel("slice", *words))
+
+
+def test_run_slices_and_rolls_and_says_where_it_cannot(tiskel: Runner, tmp_path: Path) -> None:
+    tiskel("shape", "banana", "-n", 1500, "-o", "b.ply")
+    words = ("--model", "both", "--side", "inside", "--sphere", 0.03, "--duration", 1, "--branch", "longest")
+    assert tiskel("run", "b.ply", "-o", "out", *words).returncode == 0
+    made = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {"surface.json", "surface.ply", "slices.csv", "path.csv", "roll.json", "slices.png", "roll.png"} <= made
+    report = (tmp_path / "out" / "report.html").read_text()
+    assert 'src="roll.png"' in report
+    assert "inside" in report
+    too_large = tiskel("run", "b.ply", "-o", "large", "--side", "inside", "--sphere", 9)
+    assert too_large.returncode == 0
+    assert b"no rolling: a sphere of radius 9" in too_large.stderr
+    assert (tmp_path / "large" / "surface.json").exists()
+    assert not (tmp_path / "large" / "path.csv").exists()
+    assert "fits nowhere" in (tmp_path / "large" / "report.html").read_text()
