@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @common
 def info(source: o.Source, as_json: o.AsJson = False) -> None:
-    """Say what a file holds: points and extent of a cloud, steps of a contraction, counts of a skeleton.
+    """Say what a file holds: points and extent of a cloud, steps of a contraction, counts of a skeleton, surfaces.
 
     A table on a terminal, JSON otherwise: `tiskel info curve.ply | jq .skeleton.ends`
     """
@@ -39,6 +39,8 @@ def _facts(source: Any) -> dict[str, Any]:
 
     data = read_bytes(source)
     stage = stage_of(data)
+    if stage is None and data.lstrip().startswith(b"{"):
+        return _surface_facts(data, source)
     if stage == "contraction":
         c = parse_contraction(data, str(source))
         steps = {"steps": len(c.steps), "left": len(c.points), "method": c.params.method, "status": c.status.value}
@@ -50,6 +52,18 @@ def _facts(source: Any) -> dict[str, Any]:
     cloud = parse_cloud(data, source)
     properties = {"properties": sorted(cloud.properties)} if cloud.properties else {}
     return {"file": cloud.name, "cloud": _extent(cloud.points) | properties, "warnings": list(cloud.warnings)}
+
+
+def _surface_facts(data: bytes, source: Any) -> dict[str, Any]:
+    from tiskel.io.surface_file import parse_surfaces
+
+    found = parse_surfaces(data, str(source))
+    surfaces = {
+        s.name: {"length": s.length, "radius": s.radius, "order": s.order, "error": s.error, "slices": s.cases()}
+        for s in found
+    }
+    extra = {"rejected": found.rejected} if found.rejected else {}
+    return {"file": source.name, "stage": "surface", "surfaces": surfaces, **extra, "cloud": _extent(found.cloud)}
 
 
 def _extent(points: "Points") -> dict[str, Any]:

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from tiskel.params import SurfaceParams as SurfaceParams
     from tiskel.quality.evaluate import evaluate as evaluate
     from tiskel.quality.result import Quality as Quality
+    from tiskel.rolling.bodies import BodyTrajectory as BodyTrajectory
+    from tiskel.rolling.bodies import roll_body as roll_body
     from tiskel.rolling.inputs import Inputs as Inputs
     from tiskel.rolling.roll import roll as roll
     from tiskel.rolling.trajectory import RollStatus as RollStatus
@@ -55,6 +57,7 @@ if TYPE_CHECKING:
     from tiskel.trace import StepRecord as StepRecord
 
 _HOME = {
+    "BodyTrajectory": "rolling.bodies",
     "Cloud": "io.clouds",
     "ConditioningParams": "conditioning",
     "Contraction": "contraction",
@@ -90,6 +93,7 @@ _HOME = {
     "read_skeleton": "io.skeleton_file",
     "read_surfaces": "io.surface_file",
     "roll": "rolling.roll",
+    "roll_body": "rolling.bodies",
     "shape_graph": "shapes.make",
     "write_contraction": "io.contraction_file",
     "write_skeleton": "io.skeleton_file",

@@ -85,9 +85,10 @@ def test_run_writes_every_file(tiskel: Runner, cloud: Path, tmp_path: Path) -> N
     names = {"contraction.ply", "report.html", "timings.json"}
     names |= {f"skeleton.{suffix}" for suffix in ("ply", "obj", "swc", "json", "png")}
     names |= {f"metrics.{suffix}" for suffix in ("json", "ply", "png")} | {"stability.json", "stability.png"}
+    names |= {"surface.json", "surface.ply", "slices.csv", "slices.png", "path.csv", "roll.json", "roll.png"}
     assert {p.name for p in folder.iterdir()} == names
     assert json.loads((folder / "timings.json").read_text())["contract"] > 0
-    for name in ("skeleton.png", "metrics.png", "stability.png"):
+    for name in ("skeleton.png", "metrics.png", "stability.png", "slices.png", "roll.png"):
         assert (folder / name).read_bytes().startswith(b"\x89PNG")
         assert name in (folder / "report.html").read_text()
     assert json.loads((folder / "metrics.json").read_text())["inside"]["curve"] > 0
