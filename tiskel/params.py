@@ -142,7 +142,7 @@ class SurfaceParams:
     recentre: bool = True  #: the skeleton curve moves to the middles of its sections before the surface is fitted
     gap: float = pi / 2  #: a section that misses a larger angle is rejected
     least_points: int = 12  #: a section of fewer is rejected
-    uneven: float = 0.25  #: share of the radius that a point of a star-shaped section is off at most, but for a tenth
+    uneven: float = 0.45  #: share of the radius that a point of a star-shaped section is off at most, but for a tenth
 
     def __post_init__(self) -> None:
         _among("order_rule", self.order_rule, get_args(OrderRule))

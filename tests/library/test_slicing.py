@@ -27,10 +27,12 @@ from tiskel.io.surface_file import dump_surfaces, parse_surfaces
 from tiskel.params import SurfaceParams
 from tiskel.shapes.make import ShapeParams
 from tiskel.shapes.round_cones import union_distance
+from tiskel.slicing.fit import places_of
 from tiskel.slicing.mesh import distances_to_mesh, measures, mesh_report, slice_table, surface_mesh
 from tiskel.slicing.paths import longest_path, paths_of
 from tiskel.slicing.rings import Ring, ring_of
-from tiskel.slicing.sections import Case, fit_section, largest_gap, left_out_error
+from tiskel.slicing.sections import Case, Section, fit_section, largest_gap, left_out_error
+from tiskel.slicing.series import joined_series, without_unlike
 from tiskel.surfaces.forms import forms_of, principal_curvatures
 from tiskel.surfaces.strips import fit_strip
 from tiskel.surfaces.tube import V_STOP
@@ -129,6 +131,29 @@ def test_a_gap_is_bridged_smoothly_at_every_order() -> None:
     i = np.arange(1, 9)
     waves = np.stack([np.sin(EVEN[:, None] * i), np.cos(EVEN[:, None] * i)], axis=2).reshape(len(EVEN), -1)
     assert np.abs(found.series[0] + waves @ found.series[1:] - 1).max() < 0.1
+
+
+def section(v: float, radius: float, case: Case = Case.FITTED) -> Section:
+    series = np.array([radius, 0.1 * radius, 0.0]) if case is Case.FITTED else np.zeros(0)
+    return Section(v, case, series, 40, 0.2, 0.01 if case is Case.FITTED else np.nan)
+
+
+def test_rejected_slices_are_bridged_without_overshoot() -> None:
+    """A jump from 1 to 2 on both sides of ten rejected slices: between them the radius stays between them."""
+    v = places_of(30)
+    cases = [Case.GAP if 10 <= i < 20 else Case.FITTED for i in range(30)]
+    sections = tuple(section(x, 1.0 if x < 1.5 else 2.0, case) for x, case in zip(v, cases, strict=True))
+    found = joined_series(sections, 15, closed=False).along(np.linspace(0, V_STOP, 200))[:, 0, 0]
+    assert found.min() > 0.9
+    assert found.max() < 2.1
+
+
+def test_a_section_unlike_the_others_is_rejected() -> None:
+    odd = replace(section(1.0, 1.0), error=0.2)
+    found = without_unlike((*(section(x, 1.0) for x in places_of(9)), odd))
+    assert [one.case for one in found].count(Case.FITTED) == 9
+    assert found[-1].case is Case.NOT_STAR
+    assert len(found[-1].series) == 0
 
 
 def test_the_largest_gap_goes_around() -> None:

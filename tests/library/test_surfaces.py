@@ -73,6 +73,14 @@ def test_a_strip_follows_a_smooth_curve_to_its_third_derivative() -> None:
     assert at[0] == pytest.approx(np.sin(2.2), abs=1e-7)
 
 
+def test_a_strip_takes_values_at_its_very_end() -> None:
+    """The last knot is intervals times the step, which may be a rounding below the end."""
+    for intervals in range(4, 120):
+        v = np.linspace(0, V_STOP, 2 * intervals)
+        strip = fit_strip(v, v[:, None], np.ones(len(v)), intervals, V_STOP)
+        assert strip.at(V_STOP)[0, 0] == pytest.approx(V_STOP)
+
+
 def test_cross_validation_smooths_noise_and_keeps_a_signal() -> None:
     v = np.linspace(0, V_STOP, 100)
     noisy = np.sin(3 * v) + np.random.default_rng(0).normal(size=100) * 0.05

@@ -9,6 +9,7 @@ from tiskel.surfaces.tube import V_STOP
 DENSE = 8  # places that the length is measured at, per interval
 CROSSING = 0.85  # radius times curvature that a smooth curve is kept below, so that slices do not cross
 LEAST_PENALTY = 1e-7  # tried where cross-validation leaves bends too sharp
+ASTRAY = 1.0  # radii that a smooth curve may be off its places
 EXACT = 1e-9  # penalty of a fit to what is smooth already
 ROUNDS = 3  # of evening out the speed
 
@@ -18,7 +19,7 @@ def fit_axis(
 ) -> Strip:
     """Return the curve nearest to places (k, 3) in order, as smooth as cross-validation finds it has to be.
 
-    Smoother where its bends are sharper than the body is thick. Without v the
+    Smoother where its bends are sharper than the body is thick, as far as it stays inside. Without v the
     places are in proportion to their distance, and a closed path repeats its
     first place, which counts once.
     """
@@ -28,6 +29,8 @@ def fit_axis(
             places, weights, v = places[:-1], weights[:-1], v[:-1]
     for penalty in (None, *(float(weight) for weight in WEIGHTS if weight >= LEAST_PENALTY)):
         rough = fit_strip(v, places, weights, intervals, V_STOP, periodic=closed, penalty=penalty)
+        if penalty is not None and np.linalg.norm(rough.along(v)[:, 0] - places, axis=1).max() > ASTRAY * radius:
+            break  # smoother only by leaving the body
         axis = evened(rough, intervals)
         if sharpest(axis) * radius < CROSSING:
             break

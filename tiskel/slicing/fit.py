@@ -17,13 +17,14 @@ from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
 from tiskel.slicing.rings import Ring, around, cut, frames_along, spacing_of
 from tiskel.slicing.sections import Case, Section, fit_section
-from tiskel.slicing.series import chosen_order, fit_sections, joined_series
+from tiskel.slicing.series import chosen_order, fit_sections, joined_series, without_unlike
 from tiskel.surfaces.strips import Strip
 from tiskel.surfaces.tube import V_STOP, Tube
 
 TINY = 1e-300  # for quotients that may be of nothing
 LEAST_SLICES = 4  # fewer do not determine how a surface changes along its curve
 SLAB = 1.5  # spacings that a slab is thick to each side, at least
+LINKED, LINKED_RADII = 4.0, 0.3  # spacings, or radii, between neighbours of one ring
 REACH = 3.0  # radii of the curve's nearest points: how far a section looks where points have no nodes
 INTERVALS = 4, 200  # of the splines; one for every two slices
 RECENTRINGS, CENTRE_ORDER = 2, 2  # rounds, and the order of the series whose first terms say where the middle is
@@ -68,11 +69,12 @@ def fit_surface(
 
 @dataclass(frozen=True)
 class _Cutter:
-    """What all slices of a branch share: its points, how thick slices are, and how thick the body."""
+    """What all slices of a branch share: points, how thick slices are, what hangs together, how thick the body is."""
 
     points: Points
     owned: bool
     half: float
+    link: float
     radius: float
     params: SurfaceParams
 
@@ -84,7 +86,7 @@ class _Cutter:
         reach = np.full(len(places), np.inf)
         if not self.owned:
             reach = REACH * np.asarray(cKDTree(self.points).query(axis.along(places)[:, 0])[0]) + self.half
-        found = cut(self.points, axis, field, places, self.half, reach)
+        found = cut(self.points, axis, field, places, self.half, reach, self.link)
         every, sizes = np.concatenate(found), [len(rows) for rows in found]
         all_at_once = around(self.points, every, axis, field, np.repeat(places, sizes))
         parts = np.cumsum(sizes)[:-1]
@@ -102,7 +104,9 @@ def _fitted(
     radius = float(np.median(cKDTree(_dense(nodes[path.nodes], interval)).query(points)[0])) if owned else interval
     coarse = min(max(len(path.nodes) // 2, INTERVALS[0]), max(count // 2, INTERVALS[0]))
     axis = fit_axis(nodes[path.nodes], np.ones(len(path.nodes)), radius, coarse, closed=path.closed)
-    cutter = _Cutter(points, owned, max(interval / 2, SLAB * spacing_of(points)), radius, params)
+    spacing = spacing_of(points)
+    half, link = max(interval / 2, SLAB * spacing), max(LINKED * spacing, LINKED_RADII * radius)
+    cutter = _Cutter(points, owned, half, link, radius, params)
     for _ in range(RECENTRINGS if params.recentre else 0):
         axis, cutter = _recentred(axis, cutter, count)
     trimmed: Counter[str] = Counter()
@@ -166,7 +170,9 @@ def _recentred(axis: Strip, cutter: _Cutter, count: int) -> tuple[Strip, _Cutter
     field, places = cutter.field(axis)[0], places_of(count)
     loose = replace(cutter.params, uneven=np.inf)
     rings = cutter.rings(axis, field, places)
-    sections = [fit_section(v, ring, CENTRE_ORDER, loose) for v, ring in zip(places, rings, strict=True)]
+    sections = without_unlike(
+        tuple(fit_section(v, ring, CENTRE_ORDER, loose) for v, ring in zip(places, rings, strict=True))
+    )  # fmt: skip
     frame = frames_along(axis, field, places)
     fitted = np.array([len(section.series) > 0 for section in sections])
     if fitted.sum() < LEAST_SLICES:

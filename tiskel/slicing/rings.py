@@ -12,7 +12,6 @@ from tiskel.surfaces.strips import Strip
 from tiskel.surfaces.tube import Moving, moving_frame
 
 SECTORS = 36  # directions that a section is looked at in
-LINKED = 4.0  # spacings between neighbours of one ring
 ALIKE = 0.5, 1.6  # median radius of a part of the ring, in that of its largest part
 PROJECTIONS = 3  # Newton steps to the plane through a point
 
@@ -33,8 +32,13 @@ def frames_along(axis: Strip, field: Strip, v: Numbers) -> Moving:
     return moving_frame(p, m)
 
 
-def cut(points: Points, axis: Strip, field: Strip, v: Numbers, half: float, reach: Numbers) -> list[Indices]:
-    """Return for each slice at v (s,) the rows of the ring of points around the curve, and no others."""
+def cut(
+    points: Points, axis: Strip, field: Strip, v: Numbers, half: float, reach: Numbers, link: float
+) -> list[Indices]:  # fmt: skip
+    """Return for each slice at v (s,) the rows of the ring of points around the curve, and no others.
+
+    Points no further apart than ``link`` hang together.
+    """
     from tiskel.kernels.sections import section_counts, section_points
 
     frame = frames_along(axis, field, v)
@@ -44,7 +48,6 @@ def cut(points: Points, axis: Strip, field: Strip, v: Numbers, half: float, reac
     offsets = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
     rows, (across, up, ahead) = np.empty(offsets[-1], np.int32), np.empty((3, offsets[-1]))
     section_points(points, centres, x, y, z, half, reach, offsets[:-1], rows, across, up, ahead)
-    link = LINKED * spacing_of(points)
     found = []
     for start, stop in zip(offsets[:-1], offsets[1:], strict=True):
         part = slice(start, stop)

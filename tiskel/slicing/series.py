@@ -1,5 +1,7 @@
 """From sections to one series along the curve: its order, and coefficients that are smooth in v."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from tiskel.params import SurfaceParams
@@ -8,6 +10,8 @@ from tiskel.slicing.sections import Case, Section, fit_section, left_out_error
 from tiskel.surfaces.strips import Strip, fit_strip
 from tiskel.surfaces.tube import V_STOP
 
+UNLIKE, LEAST_UNLIKE = 3.0, 0.08  # median errors, and mean radii, that a section is off its points at most
+BRIDGED = 0.1  # weight of what stands in for a rejected slice
 JUDGED = 30  # sections that choose the order
 ENDS = (0, 1, 0.0), (-1, -2, V_STOP)  # the sections that say where the surface ends, and its end
 
@@ -26,8 +30,18 @@ def chosen_order(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> int:
 def fit_sections(pairs: list[tuple[float, Ring]], order: int, params: SurfaceParams) -> tuple[Section, ...]:
     """Return the sections, all of one order, or each of its own, as published."""
     if params.order_rule == "published":
-        return tuple(_published(v, ring, params) for v, ring in pairs)
-    return tuple(fit_section(v, ring, order, params) for v, ring in pairs)
+        return without_unlike(tuple(_published(v, ring, params) for v, ring in pairs))
+    return without_unlike(tuple(fit_section(v, ring, order, params) for v, ring in pairs))
+
+
+def without_unlike(sections: tuple[Section, ...]) -> tuple[Section, ...]:
+    """Reject sections that are off their points far more than most, as those through joints are."""
+    errors = np.array([section.error for section in sections if section.case is Case.FITTED])
+    most = max(UNLIKE * float(np.median(errors)), LEAST_UNLIKE) if len(errors) else np.inf
+    return tuple(
+        replace(section, case=Case.NOT_STAR, series=np.zeros(0), error=np.nan) if section.error > most else section
+        for section in sections
+    )
 
 
 def _judged(pairs: list[tuple[float, Ring]], order: int) -> float:
@@ -45,14 +59,27 @@ def _published(v: float, ring: Ring, params: SurfaceParams) -> Section:
 
 
 def joined_series(sections: tuple[Section, ...], intervals: int, closed: bool) -> Strip:
-    """Return the coefficients as functions of v, over rejected slices as smooth as elsewhere."""
+    """Return the coefficients as functions of v.
+
+    Straight, though lightly held, over rejected slices, and straight on to the
+    ends, half a slice away: a spline alone would run off where nothing holds it.
+    """
     good = [section for section in sections if section.case is Case.FITTED]
     series = np.zeros((len(good), max(len(section.series) for section in good)))
     for row, section in zip(series, good, strict=True):
         row[: len(section.series)] = section.series
     v, weights = np.array([section.v for section in good]), np.array([float(section.points) for section in good])
-    if not closed:  # straight on to the ends, half a slice away, where a spline alone would run off
-        ends = [series[i] + (to - v[i]) / (v[i] - v[j]) * (series[i] - series[j]) for i, j, to in ENDS]
-        v, series = np.concatenate([v, [to for _, _, to in ENDS]]), np.concatenate([series, ends])
-        weights = np.concatenate([weights, weights[[i for i, _, _ in ENDS]]])
-    return fit_strip(v, series, weights / weights.mean(), intervals, V_STOP, periodic=closed)
+    weights /= weights.mean()
+    bridged = np.array([section.v for section in sections if section.case is not Case.FITTED])
+    period = V_STOP if closed else None
+    over = [np.interp(bridged, v, column, period=period) for column in series.T]
+    places, values, held = [v, bridged], [series, np.stack(over, axis=1)], [weights]
+    held.append(np.full(len(bridged), BRIDGED))
+    if not closed:
+        places.append(np.array([to for _, _, to in ENDS]))
+        values.append(
+            np.array([series[i] + (to - v[i]) / (v[i] - v[j]) * (series[i] - series[j]) for i, j, to in ENDS])
+        )
+        held.append(weights[[i for i, _, _ in ENDS]])
+    v, series, weights = (np.concatenate(parts) for parts in (places, values, held))
+    return fit_strip(v, series, weights, intervals, V_STOP, periodic=closed)

@@ -111,8 +111,9 @@ def _knots(intervals: int, stop: float) -> Numbers:
 
 def _basis(v: Numbers, intervals: int, stop: float, wrap: npt.NDArray[np.intp]) -> Numbers:
     """Return (m, b) the B-splines at places, those that are the same function added up."""
+    knots = _knots(intervals, stop)
     v = np.mod(v, stop) if wrap.max() + 1 < len(wrap) else np.clip(v, 0, stop)
-    every = BSpline.design_matrix(v, _knots(intervals, stop), DEGREE).toarray()
+    every = BSpline.design_matrix(np.minimum(v, knots[-DEGREE - 1]), knots, DEGREE).toarray()  # a rounding below stop
     return np.asarray(every @ np.eye(wrap.max() + 1)[wrap])
 
 
