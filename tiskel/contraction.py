@@ -136,7 +136,7 @@ def _weights(weights: npt.ArrayLike, count: int) -> Numbers:
 def _warnings(dropped: int, duplicates: int, status: Status) -> tuple[str, ...]:
     counted = [(dropped, "rows with NaN or Inf were dropped"), (duplicates, "exact duplicates were merged")]
     found = [f"{count} {what}" for count, what in counted if count]
-    if status is not Status.CONVERGED:
+    if status not in (Status.CONVERGED, Status.COMPLETE):
         found.append(f"stopped early: {status.advice}")
     return tuple(found)
 

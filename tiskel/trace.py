@@ -14,6 +14,7 @@ class Status(str, Enum):
     """Why a contraction stopped."""
 
     CONVERGED = "converged"
+    COMPLETE = "complete"
     MAX_STEPS = "step limit"
     BOX_GREW = "bounding box grew"
     SINGULAR = "singular system"
@@ -26,6 +27,7 @@ class Status(str, Enum):
 
 _ADVICE = {
     Status.CONVERGED: "the stopping rule of the method was met",
+    Status.COMPLETE: "all fronts have run",
     Status.MAX_STEPS: "the step limit was reached before the stopping rule was met; raise max_steps",
     Status.BOX_GREW: "a step grew the bounding box past the limit and was discarded; open or stretched rings cause it",
     Status.SINGULAR: "a step had no finite solution and was discarded; rings have degenerated",

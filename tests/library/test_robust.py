@@ -81,6 +81,13 @@ def test_random_graphs_keep_their_topology(seed: int, loops: int) -> None:
     assert (s.components, s.loops) == (1, loops)
 
 
+def test_a_front_that_fails_from_one_tip_is_made_up_for_from_another() -> None:
+    """Two thin legs that meet at a narrow angle: from the first tip the front runs along both, and the loop is lost."""
+    made = random_graph(1722120960)
+    s = skeleton_of(make_shape(made.shape, ShapeParams(count=made.count))[0])
+    assert s.loops == made.loops
+
+
 @pytest.mark.parametrize(
     ("name", "components", "loops", "ends"),
     [("hammer", 1, 0, 3), ("joint", 1, 0, 3), ("horse", 1, 0, None), ("fertility", 1, 4, None), ("cave", 1, 0, 2)],

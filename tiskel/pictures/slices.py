@@ -1,5 +1,6 @@
 """The slices of a surface, one section in both coordinates, and the surface over the points."""
 
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from tiskel.surfaces.tube import V_STOP
 WIDTH, HEIGHT = 14.0, 4.2  # inches, of one row
 TURN = np.linspace(0, 2 * np.pi, 121)
 RINGS, LINES = 40, 12  # drawn around and along
+TITLE = 56  # letters in a line over a panel
 MOST = 6  # surfaces that get a row of their own
 
 
@@ -41,7 +43,7 @@ def _slices(panel: Any, s: FittedSurface, view: Points) -> None:
         panel.plot(*(ring @ view.T).T, color=POINTS if fitted else INK, linewidth=0.6, linestyle="-" if fitted else ":")
     panel.plot(*(s.tube.curve(np.linspace(0, V_STOP, 200)) @ view.T).T, color=CURVE, linewidth=1.4)
     told = ", ".join(f"{count} {case}" for case, count in s.cases().items())
-    panel.set_title(f"branch {s.name}: {told}", fontsize=8, wrap=True, loc="left")
+    panel.set_title(fill(f"branch {s.name}: {told}", TITLE), fontsize=8)
 
 
 def _section(polar: Any, flat: Any, s: FittedSurface) -> None:

@@ -80,7 +80,7 @@ def contract_robust(points: Points, params: ContractionParams, weights: Numbers 
         history.append((everyone, np.ascontiguousarray(there @ axes)))
     never = np.full(len(points), -1, np.int32)
     return Trace(
-        history[-1][1], everyone, rings, never, never, tuple(history), tuple(steps), Status.CONVERGED,
+        history[-1][1], everyone, rings, never, never, tuple(history), tuple(steps), Status.COMPLETE,
         watch.seconds["rings"], sections.section, sections.level,
     )  # fmt: skip
 
