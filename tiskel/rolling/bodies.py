@@ -16,13 +16,12 @@ from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import contact_rates
 from tiskel.rolling.inputs import Inputs, constant
+from tiskel.rolling.roll import duration_of, longest_step
 from tiskel.rolling.sphere import quaternions_of, turn_of
 from tiskel.rolling.trajectory import RollStatus
 from tiskel.surfaces.forms import Forms, curvature, forms_of
 from tiskel.surfaces.jets import ParametricSurface
 
-DURATION = 10.0  # seconds, where neither settings nor inputs say
-STRIDE = 0.4  # radians of omega in a step of the solver at most
 TOUCHING = 1e-6  # of the relative curvature at the start: less is none
 
 
@@ -61,7 +60,6 @@ def roll_body(
     if params.twist != "object":
         raise TiskelError(f"two bodies take the twist of the object, got twist {params.twist!r}")
     inputs = inputs or constant(params)
-    duration = params.duration or (float(inputs.t[-1]) if len(inputs.t) > 1 else DURATION)
     pair = _Pair(surface, body, params.sigma)
     start = np.array(params.start)
     least = pair.margin(0.0, start)
@@ -80,10 +78,9 @@ def roll_body(
         return float(min(y[1] - low, high - y[1], 1.0))
 
     tight.terminal = left.terminal = True  # type: ignore[attr-defined]
-    fastest = float(np.linalg.norm(inputs.values[:, :3], axis=1).max())
     solution = solve_ivp(
-        rate, (0.0, duration), start, rtol=params.rtol, atol=params.atol, dense_output=True,
-        max_step=min(inputs.longest_step, STRIDE / max(fastest, 1e-300)), events=[tight, left],
+        rate, (0.0, duration_of(params, inputs)), start, rtol=params.rtol, atol=params.atol, dense_output=True,
+        max_step=longest_step(inputs, np.inf), events=[tight, left],
     )  # fmt: skip
     stop = float(solution.t[-1])
     t = np.append(np.arange(0, stop - 0.5 / params.rate, 1 / params.rate), stop)

@@ -45,7 +45,7 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     _check_start(surface, params, radius, start, watched)
     solution = solve_ivp(
         _Rate(model, params, inputs), (0.0, duration_of(params, inputs)), start, method="RK45", rtol=params.rtol,
-        atol=params.atol, max_step=_longest_step(inputs, radius), events=watched, dense_output=True,
+        atol=params.atol, max_step=longest_step(inputs, radius), events=watched, dense_output=True,
     )  # fmt: skip
     stop = float(solution.t[-1])
     t = np.append(np.arange(0, stop - 0.5 / params.rate, 1 / params.rate), stop)
@@ -58,7 +58,7 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     )  # fmt: skip
 
 
-def _longest_step(inputs: Inputs, radius: float) -> float:
+def longest_step(inputs: Inputs, radius: float) -> float:
     """Return the longest step in time that misses neither a row of the inputs nor a place where the run should end."""
     fastest = float((np.linalg.norm(inputs.values[:, :3], axis=1)
                      + np.linalg.norm(inputs.values[:, 3:], axis=1) / radius).max())  # fmt: skip
