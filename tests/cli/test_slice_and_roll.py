@@ -57,6 +57,9 @@ def test_every_file_of_slice_is_written(tiskel: Runner, skeleton: Path, tmp_path
     rows = table((tmp_path / "t.csv").read_bytes())
     assert float(rows[len(rows) // 2]["equivalent_radius"]) == pytest.approx(0.22, abs=0.01)
     assert read_surfaces(tmp_path / "f.json")[0].radius == pytest.approx(0.187, abs=0.01)
+    said = json.loads(tiskel("info", "f.json").stdout)
+    assert said["stage"] == "surface"
+    assert said["surfaces"]["0"]["slices"]["fitted"] > 40
 
 
 def test_every_file_of_roll_is_written(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
