@@ -108,10 +108,8 @@ def _fitted(source: Path, curve: Path | None, params: "SurfaceParams") -> "tuple
 
 def tell_surfaces(surfaces: "Surfaces") -> None:
     """Print a line for every surface, why others have none, and warnings."""
-    from tiskel.slicing.mesh import mesh_report
-
     for s in surfaces:
-        off, told = mesh_report(s), ", ".join(f"{count} {case}" for case, count in s.cases().items())
+        off, told = s.distance, ", ".join(f"{count} {case}" for case, count in s.cases().items())
         frame = f"frame {s.frame}" + (f" ({s.note})" if s.note else "")
         console.say(
             f"branch {s.name}: length {s.length:.6g}, radius {s.radius:.4g}, order {s.order}, slices: {told}; {frame}; "

@@ -27,7 +27,6 @@ from tiskel.io import ply
 from tiskel.io.streams import read_bytes, write_bytes
 from tiskel.params import SurfaceParams
 from tiskel.slicing.fitted import FittedSurface, Surfaces
-from tiskel.slicing.mesh import mesh_report
 from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.strips import DEGREE, Strip
 from tiskel.surfaces.tube import V_STOP, Tube
@@ -63,7 +62,7 @@ def _surface_document(s: FittedSurface) -> dict[str, Any]:
     return {
         "branch": s.name, "nodes": s.nodes.tolist(), "closed": s.tube.closed, "frame": s.frame, "note": s.note,
         "length": s.length, "radius": s.radius, "order": s.order, "error": s.error, "warnings": list(s.warnings),
-        "trimmed": s.trimmed, "distance": mesh_report(s), "rows": s.rows.tolist(),
+        "trimmed": s.trimmed, "distance": s.distance, "rows": s.rows.tolist(),
         "axis": s.tube.axis.coefficients.tolist(), "field": s.tube.field.coefficients.tolist(),
         "series": s.tube.series.coefficients.tolist(), "sections": [_section_document(one) for one in s.sections],
     }  # fmt: skip
@@ -121,6 +120,7 @@ def _surface_of(one: dict[str, Any], cloud: "np.ndarray[Any, np.dtype[np.float64
         trimmed={str(case): int(count) for case, count in one["trimmed"].items()},
         rows=rows,
         error=float(one["error"]),
+        distance={key: float(one["distance"][key]) for key in ("mean", "p95", "max")},
         radius=float(one["radius"]),
         length=float(one["length"]),
         cloud=cloud,

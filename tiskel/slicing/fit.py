@@ -14,6 +14,7 @@ from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
 from tiskel.slicing.field import fit_field
 from tiskel.slicing.fitted import FittedSurface, Surfaces
+from tiskel.slicing.mesh import mesh_report
 from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
 from tiskel.slicing.rings import Ring, around, cut, frames_along, spacing_of
 from tiskel.slicing.sections import Case, Section, fit_section
@@ -127,10 +128,10 @@ def _fitted(
     tube = Tube(axis, field, joined_series(sections, intervals, path.closed))
     rows, error = _misfit(tube, rings, sections)
     fitted = FittedSurface(
-        tube, path.name, path.nodes, frame, sections, dict(trimmed), near[rows], error,
+        tube, path.name, path.nodes, frame, sections, dict(trimmed), near[rows], error, {},
         float(np.median(tube.series.along(places_of(count))[:, 0, 0])), tube.length(), cloud, note, (),
     )  # fmt: skip
-    return replace(fitted, warnings=_doubts(fitted))
+    return replace(fitted, distance=mesh_report(fitted), warnings=_doubts(fitted))
 
 
 def places_of(count: int) -> Numbers:

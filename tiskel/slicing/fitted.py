@@ -20,7 +20,8 @@ class FittedSurface:
     tube : the surface itself. name : of the branch. nodes : (k,) of the path; a closed one repeats its first.
     frame : "m", "normal" or "rotation-minimising"; note : why it is not the one asked for.
     sections : every slice, fitted or rejected; trimmed : the cases of those beyond both ends of the surface.
-    rows : (p,) rows in the cloud that the surface was fitted to; error : RMS of their misfit over the mean radius.
+    rows : (p,) rows in the cloud that the surface was fitted to; error : RMS of their misfit over the mean radius;
+    distance : theirs to the mesh of the surface, mean, p95 and max.
     radius : median of the mean radii. length : of the skeleton curve. cloud : (n, 3), all of it.
     warnings : what a user should know.
     """
@@ -33,6 +34,7 @@ class FittedSurface:
     trimmed: dict[str, int]
     rows: Indices
     error: float
+    distance: dict[str, float]
     radius: float
     length: float
     cloud: Points
