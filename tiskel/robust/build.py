@@ -22,7 +22,7 @@ from tiskel.robust.network import Network, neighbour_network
 from tiskel.robust.sections import section_curve
 
 ROUNDS, ROUNDS_AGAIN = 4, 2  # of the fit, and after a change to the graph
-DOUBTFUL = 0.009  # of the curve outside or of the points far off: other fronts are tried, fewer the less there is
+DOUBTFUL = 0.012  # of the curve outside or of the points far off: other fronts are tried, fewer the less there is
 PLACES, OUTSIDE, FAR = 200, 0.4, 0.35  # on the curve; winding number; local radii
 THIN = 2.0  # spacings; thinner places say nothing of inside and outside
 CLEARLY = 0.7  # of the doubt that another front may leave, to be taken
