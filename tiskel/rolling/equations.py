@@ -20,7 +20,7 @@ inside are right (:func:`local_rates`).
 from math import cos, sin
 from typing import NamedTuple
 
-from tiskel.surfaces.forms import Form, Forms, curvature
+from tiskel.surfaces.forms import Form, Forms, curvature, principal_curvatures
 from tiskel.surfaces.jets import Scalar
 from tiskel.surfaces.tube import Radius
 
@@ -117,8 +117,7 @@ def local_rates(
 
 def margin(forms: Forms, radius: Scalar) -> Scalar:
     """Return lambda_min(K_o) + 1/R_s, in 1 / length: the sphere fits where it is positive."""
-    xx, xy, yy = curvature(forms)
-    return (xx + yy) / 2 - (((xx - yy) / 2) ** 2 + xy**2) ** 0.5 + 1 / radius
+    return principal_curvatures(forms)[0] + 1 / radius
 
 
 def controllability(forms: Forms, radius: float, u_s: Scalar) -> Scalar:

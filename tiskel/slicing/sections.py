@@ -71,15 +71,24 @@ def largest_gap(u: Numbers) -> float:
     """Return the largest angle between neighbours in angle, 2 pi where there are fewer than two."""
     if len(u) < 2:
         return 2 * np.pi
+    return float(gaps_of(u)[1].max())
+
+
+def gaps_of(u: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the angles (k,) in order, and how far it is from each to the next, around the circle."""
     ordered = np.sort(np.mod(u, 2 * np.pi))
-    return float(np.diff(np.append(ordered, ordered[0] + 2 * np.pi)).max())
+    return ordered, np.diff(np.append(ordered, ordered[0] + 2 * np.pi))
+
+
+def waves_of(u: Numbers, order: int) -> Numbers:
+    """Return (k, 2 N): sin u, cos u, sin 2u, cos 2u ..."""
+    i = np.arange(1, order + 1)
+    return np.stack([np.sin(u[:, None] * i), np.cos(u[:, None] * i)], axis=2).reshape(len(u), -1)
 
 
 def basis_of(ring: Ring, v: float, order: int) -> Numbers:
     """Return (k, 2 N + 4): 1, sin u, cos u, sin 2u ..., and three columns that grow along the curve."""
-    i = np.arange(1, order + 1)
-    waves = np.stack([np.sin(ring.u[:, None] * i), np.cos(ring.u[:, None] * i)], axis=2).reshape(len(ring.u), -1)
-    series = np.concatenate([np.ones((len(ring.u), 1)), waves], axis=1)
+    series = np.concatenate([np.ones((len(ring.u), 1)), waves_of(ring.u, order)], axis=1)
     return np.concatenate([series, (ring.v - v)[:, None] * series[:, :SLOPES]], axis=1)
 
 
@@ -88,24 +97,21 @@ def held_in_gaps(u: Numbers, order: int) -> Numbers:
 
     Points say nothing of waves that fit into a gap between them; this does.
     """
-    ordered = np.sort(np.mod(u, 2 * np.pi))
-    widths = np.diff(np.append(ordered, ordered[0] + 2 * np.pi))
+    ordered, widths = gaps_of(u)
     open_ends = np.flatnonzero(widths > WIDE)
     places = [ordered[i] + widths[i] * np.linspace(0, 1, PROBES + 2)[1:-1] for i in open_ends]
     if not places:
         return np.zeros((2 * order + 1, 2 * order + 1))
-    i, at = np.arange(1, order + 1), np.concatenate(places)[:, None]
-    waves = np.stack([-(i**2) * np.sin(at * i), -(i**2) * np.cos(at * i)], axis=2).reshape(len(at), -1)
-    bend = np.concatenate([np.zeros((len(at), 1)), waves], axis=1)
+    at = np.concatenate(places)
+    turns = -np.repeat(np.arange(1, order + 1) ** 2, 2) * waves_of(at, order)
+    bend = np.concatenate([np.zeros((len(at), 1)), turns], axis=1)
     return np.asarray(bend.T @ bend / len(at))
 
 
 def runs_away(solution: Numbers, r: Numbers, order: int) -> bool:
     """Tell whether a series is far from all distances it was fitted to: it fills a gap with what is not there."""
     u = np.linspace(0, 2 * np.pi, 20 * order, endpoint=False)
-    i = np.arange(1, order + 1)
-    waves = np.stack([np.sin(u[:, None] * i), np.cos(u[:, None] * i)], axis=2).reshape(len(u), -1)
-    fitted = solution[0] + waves @ solution[1 : 2 * order + 1]
+    fitted = solution[0] + waves_of(u, order) @ solution[1 : 2 * order + 1]
     return bool(fitted.max() > AWAY * r.max() or fitted.min() < r.min() / AWAY)
 
 
