@@ -9,7 +9,9 @@ import pytest
 
 from reference.fixtures import PROGRAM, Load, Runner
 
-REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", Path(__file__).parents[1] / ".." / "shared" / "reference"))
+SHARED = Path(__file__).parents[1] / ".." / "shared"
+REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", SHARED / "reference"))
+CASES = Path(os.environ.get("TISKEL_CASES", SHARED / "cases"))
 
 
 @pytest.fixture(scope="session")
@@ -60,3 +62,10 @@ def capsule() -> np.ndarray:
 def cloud(tiskel: Runner, tmp_path: Path) -> Path:
     assert tiskel("shape", "y", "-n", 900, "-o", "y.ply").returncode == 0
     return tmp_path / "y.ply"
+
+
+@pytest.fixture(scope="session")
+def cases_folder() -> Path:
+    if not CASES.is_dir():
+        pytest.skip(f"no failing inputs in {CASES}; set TISKEL_CASES")
+    return CASES

@@ -13,6 +13,7 @@ CLEARED = 1.0  # radii about a joint in which nodes say nothing of their limbs
 HOLD = 0.2  # weight of where a joint is, against the lines of its limbs
 FARTHEST = 1.5  # radii that a joint moves at most
 INSIDE = 0.4  # winding number that a place for a joint has at least
+TINY = np.finfo(float).tiny  # stands in for the radius of a node whose points lie on it
 
 
 def merged_joints(curve: ConeCurve) -> ConeCurve:
@@ -23,7 +24,7 @@ def merged_joints(curve: ConeCurve) -> ConeCurve:
             first, last = int(branch[0]), int(branch[-1])
             if first != last and min(degree[first], degree[last]) > 2:
                 apart = float(np.linalg.norm(curve.nodes[first] - curve.nodes[last]))
-                ratio = apart / float(max(curve.radii[first], curve.radii[last]))
+                ratio = apart / max(float(curve.radii[first]), float(curve.radii[last]), TINY)
                 into = np.arange(len(curve.nodes), dtype=np.int32)
                 into[branch] = branch.min()
                 if ratio < NEAR and keeps_loops(curve, into):

@@ -14,6 +14,7 @@ FARTHEST = 0.98  # quantile of its points that says how far
 TIP_SHARE, TIP_LEAST = 0.05, 3  # the farthest points ahead of an end
 AHEAD = 0.5  # cosine to the direction of the end
 GROWS, GROWS_SPACINGS, GROWS_DEVIATIONS = 0.2, 1.0, 3.0  # the end does not reach the tip: in radii, and at least
+TINY = np.finfo(float).tiny  # stands in for the radius of a node whose points lie on it
 TAPER = 0.5, 0.9  # radius of a new tip in that of the end: the first guess, and at most
 
 
@@ -26,7 +27,7 @@ def without_stubs(curve: ConeCurve, points: Points) -> ConeCurve:
             rows = np.flatnonzero(np.isin(curve.owner, path[:-1]))
             if degree[joint] > 2 and len(rows):
                 others = [curve.radii[node] for node in around[joint] if node != path[-2]]
-                radius = min(curve.radii[joint], float(np.mean(others)))
+                radius = max(min(float(curve.radii[joint]), float(np.mean(others))), TINY)
                 stubs.append((float(np.linalg.norm(points[rows] - curve.nodes[joint], axis=1).max()) / radius, path))
         shortest = min(stubs, key=lambda stub: (stub[0], int(stub[1][0])), default=None)
         if shortest is None or shortest[0] >= BARELY:
