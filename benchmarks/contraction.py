@@ -30,9 +30,9 @@ from tiskel import (
     shape_graph,
 )
 from tiskel.arrays import Points, normalisation
-from tiskel.neighbourhood import cloud_rings, nearest_neighbours
+from tiskel.geometry.neighbours import cloud_rings, nearest_neighbours
+from tiskel.geometry.rings import cotangent_laplacian, mean_ring_length
 from tiskel.params import published_neighbours
-from tiskel.rings import cotangent_laplacian, mean_ring_length
 
 ROUNDS = 5
 HAMMER = Path(__file__).parents[1] / ".." / "shared" / "reference" / "clouds" / "hammer.ply"

@@ -17,11 +17,11 @@ import numpy as np
 
 from tiskel import MetricParams, ShapeParams, make_shape, shape_graph
 from tiskel.arrays import Numbers, Points, normalisation
+from tiskel.geometry.ellipse import fit_ellipse
+from tiskel.metrics.barcode import barcode
+from tiskel.metrics.distances import bottleneck
+from tiskel.metrics.smoothness import point_smoothness
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
-from tiskel.quality.barcode import barcode
-from tiskel.quality.distances import bottleneck
-from tiskel.quality.ellipse import fit_ellipse
-from tiskel.quality.smoothness import point_smoothness
 
 OUT = Path(__file__).parent / "demonstrations"
 SHAPES = ("capsule", "torus", "y")

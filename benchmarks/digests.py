@@ -23,8 +23,8 @@ import numpy as np
 from tiskel import ContractionParams, ShapeParams, contract, extract_skeleton, load_cloud, make_shape, shape_graph
 from tiskel.arrays import Points
 from tiskel.contraction import Contraction
-from tiskel.io.contraction_file import dump_contraction
-from tiskel.io.skeleton_file import dump_skeleton
+from tiskel.io.stages.contraction import dump_contraction
+from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.skeleton import Skeleton
 
 HERE = Path(__file__).parent

@@ -31,8 +31,8 @@ from tiskel import (
     shape_graph,
 )
 from tiskel.arrays import Points
-from tiskel.quality.tables import COLUMNS, row_of, said, to_csv
-from tiskel.shapes.catalogue import SHAPES
+from tiskel.gallery.catalogue import SHAPES
+from tiskel.metrics.tables import COLUMNS, row_of, said, to_csv
 
 OUT = Path(__file__).parent / "measures"
 REFERENCE = Path(__file__).parents[1] / ".." / "shared" / "reference"

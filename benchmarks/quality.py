@@ -33,12 +33,12 @@ from tiskel import (
     make_shape,
     shape_graph,
 )
-from tiskel.quality.tables import to_csv
-from tiskel.quality.truth import agreement
-from tiskel.shapes.catalogue import SHAPES
-from tiskel.shapes.make import analytic_skeleton
-from tiskel.shapes.random_graphs import random_graph
-from tiskel.shapes.round_cones import ConeGraph
+from tiskel.gallery.catalogue import SHAPES
+from tiskel.gallery.make import analytic_skeleton
+from tiskel.gallery.random_graphs import random_graph
+from tiskel.geometry.round_cones import ConeGraph
+from tiskel.metrics.tables import to_csv
+from tiskel.metrics.truth import agreement
 
 HERE = Path(__file__).parent
 OUT = HERE / "quality"

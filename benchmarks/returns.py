@@ -19,7 +19,6 @@ import sys
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from types import CodeType, FrameType
-from typing import Any
 
 import numpy as np
 

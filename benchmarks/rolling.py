@@ -40,8 +40,8 @@ from tiskel import (
     shape_graph,
 )
 from tiskel.arrays import Numbers, Points
+from tiskel.geometry.round_cones import union_distance
 from tiskel.pictures.rolling import rolling_picture
-from tiskel.shapes.round_cones import union_distance
 from tiskel.surfaces.forms import forms_of, principal_curvatures
 from tiskel.surfaces.tube import V_STOP
 

@@ -29,7 +29,7 @@ def contract(
     params = stages.contraction_params(method, neighbours, max_steps, normalise, solver)
     cloud, points = stages.cloud_points(source, **conditioning)
     from tiskel import contract as contract_cloud
-    from tiskel.io.contraction_file import dump_contraction
+    from tiskel.io.stages.contraction import dump_contraction
 
     contraction = contract_cloud(points, params, stages.weights_of(cloud, points, weights))
     stages.tell_contraction(contraction)

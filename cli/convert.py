@@ -22,8 +22,8 @@ def convert(source: o.Source, target: Target, sample: o.Sample = None, seed: o.S
     from tiskel.io.clouds import parse_cloud
     from tiskel.io.exports import EXPORTS
     from tiskel.io.point_files import dump_cloud
-    from tiskel.io.skeleton_file import parse_skeleton
-    from tiskel.io.stage import stage_of
+    from tiskel.io.stages.skeleton import parse_skeleton
+    from tiskel.io.stages.which import stage_of
     from tiskel.io.streams import read_bytes
 
     suffix = target.suffix.lower().removeprefix(".")

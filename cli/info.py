@@ -32,9 +32,9 @@ def info(source: o.Source, as_json: o.AsJson = False) -> None:
 
 def _facts(source: Any) -> dict[str, Any]:
     from tiskel.io.clouds import parse_cloud
-    from tiskel.io.contraction_file import parse_contraction
-    from tiskel.io.skeleton_file import parse_skeleton
-    from tiskel.io.stage import stage_of
+    from tiskel.io.stages.contraction import parse_contraction
+    from tiskel.io.stages.skeleton import parse_skeleton
+    from tiskel.io.stages.which import stage_of
     from tiskel.io.streams import read_bytes
 
     data = read_bytes(source)
@@ -55,7 +55,7 @@ def _facts(source: Any) -> dict[str, Any]:
 
 
 def _surface_facts(data: bytes, source: Any) -> dict[str, Any]:
-    from tiskel.io.surface_file import parse_surfaces
+    from tiskel.io.stages.surface import parse_surfaces
 
     found = parse_surfaces(data, str(source))
     surfaces = {

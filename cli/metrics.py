@@ -15,7 +15,7 @@ from tiskel.params import MetricParams
 
 if TYPE_CHECKING:
     from tiskel.arrays import Points
-    from tiskel.quality.result import Quality
+    from tiskel.metrics.result import Quality
 
 METRICS = MetricParams()
 
@@ -134,7 +134,7 @@ def _measure(
 
 def _write_extras(measured: list[Measured], heat: Path | None, plot: Path | None) -> None:
     if heat is not None:
-        from tiskel.io.heat_file import dump_heat
+        from tiskel.io.stages.heat import dump_heat
 
         stages.write(heat, lambda: dump_heat(measured[0][2]))
     if plot is not None:
@@ -152,7 +152,7 @@ def document(name: str, quality: "Quality") -> dict[str, Any]:
 def _show(measured: list[Measured], as_json: bool, as_csv: bool) -> None:
     documents = [document(name, quality) for name, _, quality in measured]
     if as_csv:
-        from tiskel.quality.tables import row_of, to_csv
+        from tiskel.metrics.tables import row_of, to_csv
 
         rows = [{"file": d["file"], **row_of(d)} for d in documents]
         sys.stdout.write(to_csv(rows).decode())
@@ -167,7 +167,7 @@ def _show(measured: list[Measured], as_json: bool, as_csv: bool) -> None:
 
 def _table(documents: list[dict[str, Any]]):  # type: ignore[no-untyped-def]
     """Return one column per skeleton, the best values bold and starred, reasons where there is no value."""
-    from tiskel.quality.tables import COLUMNS, best_rows, row_of, said
+    from tiskel.metrics.tables import COLUMNS, best_rows, row_of, said
 
     rows = [row_of(d) for d in documents]
     best = best_rows(rows)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tiskel.cli.run_surface import Rolled
     from tiskel.contraction import Contraction
-    from tiskel.quality.result import Quality
+    from tiskel.metrics.result import Quality
+    from tiskel.metrics.stability import Stability
     from tiskel.skeleton import Skeleton
-    from tiskel.stability import Stability
 
 
 def report(
@@ -74,7 +74,7 @@ IMAGE = '</table><img src="{}" alt="{}"><table>'
 
 def _measures(quality: "Quality") -> list[tuple[str, str, str]]:
     """Return heading, value and, where there is none, the reason of every measure."""
-    from tiskel.quality.tables import COLUMNS, row_of, said
+    from tiskel.metrics.tables import COLUMNS, row_of, said
 
     document = quality.as_dict()
     row = row_of(document)

@@ -59,8 +59,8 @@ def roll(
     )  # fmt: skip
     given = so.inputs_of(inputs)
     from tiskel import roll as run
-    from tiskel.io.roll_files import to_csv
-    from tiskel.io.surface_file import read_surfaces
+    from tiskel.io.stages.roll import to_csv
+    from tiskel.io.stages.surface import read_surfaces
 
     surface = read_surfaces(source).named(branch)
     runs = [run(surface, params, given) for params in settings]

@@ -22,9 +22,9 @@ from tiskel.params import SkeletonParams, SurfaceParams
 if TYPE_CHECKING:
     from tiskel.contraction import Contraction
     from tiskel.io.clouds import Cloud
-    from tiskel.quality.result import Quality
+    from tiskel.metrics.result import Quality
+    from tiskel.metrics.stability import Stability
     from tiskel.skeleton import Skeleton
-    from tiskel.stability import Stability
 
 T = TypeVar("T")
 Folder = Annotated[
@@ -97,10 +97,10 @@ class Made:
     rolled: Rolled
 
     def stage_files(self) -> dict[str, Callable[[], bytes]]:
-        from tiskel.io.contraction_file import dump_contraction
         from tiskel.io.exports import to_json, to_obj, to_swc
-        from tiskel.io.heat_file import dump_heat
-        from tiskel.io.skeleton_file import dump_skeleton
+        from tiskel.io.stages.contraction import dump_contraction
+        from tiskel.io.stages.heat import dump_heat
+        from tiskel.io.stages.skeleton import dump_skeleton
 
         source = self.cloud.source
         return {

@@ -32,8 +32,8 @@ class Rolled:
         if self.surfaces is None or self.surface is None:
             return {}
         from tiskel.io.mesh_file import dump_mesh
-        from tiskel.io.roll_files import to_csv
-        from tiskel.io.surface_file import dump_surfaces
+        from tiskel.io.stages.roll import to_csv
+        from tiskel.io.stages.surface import dump_surfaces
         from tiskel.slicing.mesh import joined_mesh, surface_mesh
 
         surfaces = self.surfaces

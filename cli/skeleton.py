@@ -40,10 +40,10 @@ def skeleton(
     chosen = format_of(format_name, str(output or ""))
     params = SkeletonParams(raw=raw, radius=radius)
     from tiskel import extract_skeleton
-    from tiskel.io.contraction_file import parse_contraction
     from tiskel.io.exports import EXPORTS
     from tiskel.io.ply import source_of
-    from tiskel.io.skeleton_file import dump_skeleton
+    from tiskel.io.stages.contraction import parse_contraction
+    from tiskel.io.stages.skeleton import dump_skeleton
     from tiskel.io.streams import read_bytes
 
     data = read_bytes(source)

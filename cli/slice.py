@@ -72,7 +72,7 @@ def slice_command(
     surfaces, origin = _fitted(source, curve, params)
     tell_surfaces(surfaces)
     from tiskel.io.mesh_file import dump_mesh
-    from tiskel.io.surface_file import dump_surfaces
+    from tiskel.io.stages.surface import dump_surfaces
     from tiskel.slicing.mesh import joined_mesh, surface_mesh
 
     if mesh is not None:
@@ -93,7 +93,7 @@ def _fitted(source: Path, curve: Path | None, params: "SurfaceParams") -> "tuple
     from tiskel import fit_surface, load_cloud
     from tiskel.io.curves import load_curve
     from tiskel.io.ply import source_of
-    from tiskel.io.skeleton_file import parse_skeleton
+    from tiskel.io.stages.skeleton import parse_skeleton
     from tiskel.io.streams import read_bytes
 
     if curve is None:
@@ -122,7 +122,7 @@ def tell_surfaces(surfaces: "Surfaces") -> None:
 
 def slices_csv(surfaces: "Surfaces") -> bytes:
     """Return the table of all slices."""
-    from tiskel.quality.tables import to_csv
+    from tiskel.metrics.tables import to_csv
     from tiskel.slicing.mesh import slice_table
 
     return to_csv([row for surface in surfaces for row in slice_table(surface)])

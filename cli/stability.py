@@ -11,7 +11,7 @@ from tiskel.cli import options as o
 from tiskel.cli.common import common
 
 if TYPE_CHECKING:
-    from tiskel.stability import Stability
+    from tiskel.metrics.stability import Stability
 
 
 @common
@@ -22,7 +22,7 @@ def stability(source: o.Source, as_json: o.AsJson = False, plot: o.Plot = None) 
     `tiskel contract scan.ply | tiskel stability - | jq .stable`
     """
     from tiskel import assess_stability
-    from tiskel.io.contraction_file import read_contraction
+    from tiskel.io.stages.contraction import read_contraction
 
     contraction = read_contraction(source)
     result = assess_stability(contraction)

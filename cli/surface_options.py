@@ -171,6 +171,6 @@ def roll_settings(
 
 def inputs_of(path: Path | None) -> "Inputs | None":
     """Return the inputs of a file, nothing where none is named."""
-    from tiskel.io.roll_files import read_inputs
+    from tiskel.io.stages.roll import read_inputs
 
     return None if path is None else read_inputs(path)

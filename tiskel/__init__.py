@@ -14,90 +14,90 @@ from importlib import import_module, metadata
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tiskel.conditioning import ConditioningParams as ConditioningParams
-    from tiskel.conditioning import condition as condition
     from tiskel.contraction import Contraction as Contraction
     from tiskel.contraction import contract as contract
     from tiskel.errors import TiskelError as TiskelError
+    from tiskel.gallery.make import ShapeParams as ShapeParams
+    from tiskel.gallery.make import make_shape as make_shape
+    from tiskel.gallery.make import shape_graph as shape_graph
     from tiskel.io.clouds import Cloud as Cloud
     from tiskel.io.clouds import load_cloud as load_cloud
-    from tiskel.io.contraction_file import read_contraction as read_contraction
-    from tiskel.io.contraction_file import write_contraction as write_contraction
     from tiskel.io.curves import Curve as Curve
     from tiskel.io.curves import load_curve as load_curve
-    from tiskel.io.skeleton_file import read_skeleton as read_skeleton
-    from tiskel.io.skeleton_file import write_skeleton as write_skeleton
-    from tiskel.io.surface_file import read_surfaces as read_surfaces
-    from tiskel.io.surface_file import write_surfaces as write_surfaces
+    from tiskel.io.stages.contraction import read_contraction as read_contraction
+    from tiskel.io.stages.contraction import write_contraction as write_contraction
+    from tiskel.io.stages.skeleton import read_skeleton as read_skeleton
+    from tiskel.io.stages.skeleton import write_skeleton as write_skeleton
+    from tiskel.io.stages.surface import read_surfaces as read_surfaces
+    from tiskel.io.stages.surface import write_surfaces as write_surfaces
+    from tiskel.methods.trace import Status as Status
+    from tiskel.methods.trace import StepRecord as StepRecord
+    from tiskel.metrics.evaluate import evaluate as evaluate
+    from tiskel.metrics.result import Quality as Quality
+    from tiskel.metrics.stability import Stability as Stability
+    from tiskel.metrics.stability import assess_stability as assess_stability
     from tiskel.params import ContractionParams as ContractionParams
     from tiskel.params import MetricParams as MetricParams
     from tiskel.params import RollParams as RollParams
     from tiskel.params import SkeletonParams as SkeletonParams
     from tiskel.params import StabilityParams as StabilityParams
     from tiskel.params import SurfaceParams as SurfaceParams
-    from tiskel.quality.evaluate import evaluate as evaluate
-    from tiskel.quality.result import Quality as Quality
+    from tiskel.preprocess.conditioning import ConditioningParams as ConditioningParams
+    from tiskel.preprocess.conditioning import condition as condition
     from tiskel.rolling.bodies import BodyTrajectory as BodyTrajectory
     from tiskel.rolling.bodies import roll_body as roll_body
     from tiskel.rolling.inputs import Inputs as Inputs
     from tiskel.rolling.roll import roll as roll
     from tiskel.rolling.trajectory import RollStatus as RollStatus
     from tiskel.rolling.trajectory import Trajectory as Trajectory
-    from tiskel.shapes.make import ShapeParams as ShapeParams
-    from tiskel.shapes.make import make_shape as make_shape
-    from tiskel.shapes.make import shape_graph as shape_graph
     from tiskel.skeleton import Skeleton as Skeleton
     from tiskel.skeleton import extract_skeleton as extract_skeleton
     from tiskel.slicing.fit import fit_surface as fit_surface
     from tiskel.slicing.fitted import FittedSurface as FittedSurface
     from tiskel.slicing.fitted import Surfaces as Surfaces
-    from tiskel.stability import Stability as Stability
-    from tiskel.stability import assess_stability as assess_stability
-    from tiskel.trace import Status as Status
-    from tiskel.trace import StepRecord as StepRecord
 
 _HOME = {
     "BodyTrajectory": "rolling.bodies",
     "Cloud": "io.clouds",
-    "ConditioningParams": "conditioning",
+    "ConditioningParams": "preprocess.conditioning",
     "Contraction": "contraction",
     "ContractionParams": "params",
     "Curve": "io.curves",
     "FittedSurface": "slicing.fitted",
     "Inputs": "rolling.inputs",
     "MetricParams": "params",
-    "Quality": "quality.result",
+    "Quality": "metrics.result",
     "RollParams": "params",
     "RollStatus": "rolling.trajectory",
-    "ShapeParams": "shapes.make",
+    "ShapeParams": "gallery.make",
     "Skeleton": "skeleton",
     "SkeletonParams": "params",
-    "Stability": "stability",
+    "Stability": "metrics.stability",
     "StabilityParams": "params",
-    "Status": "trace",
-    "StepRecord": "trace",
+    "Status": "methods.trace",
+    "StepRecord": "methods.trace",
     "SurfaceParams": "params",
     "Surfaces": "slicing.fitted",
     "TiskelError": "errors",
     "Trajectory": "rolling.trajectory",
-    "assess_stability": "stability",
-    "condition": "conditioning",
+    "assess_stability": "metrics.stability",
+    "condition": "preprocess.conditioning",
     "contract": "contraction",
-    "evaluate": "quality.evaluate",
+    "evaluate": "metrics.evaluate",
     "extract_skeleton": "skeleton",
     "fit_surface": "slicing.fit",
     "load_cloud": "io.clouds",
     "load_curve": "io.curves",
-    "make_shape": "shapes.make",
-    "read_contraction": "io.contraction_file",
-    "read_skeleton": "io.skeleton_file",
-    "read_surfaces": "io.surface_file",
+    "make_shape": "gallery.make",
+    "read_contraction": "io.stages.contraction",
+    "read_skeleton": "io.stages.skeleton",
+    "read_surfaces": "io.stages.surface",
     "roll": "rolling.roll",
     "roll_body": "rolling.bodies",
-    "shape_graph": "shapes.make",
-    "write_contraction": "io.contraction_file",
-    "write_skeleton": "io.skeleton_file",
-    "write_surfaces": "io.surface_file",
+    "shape_graph": "gallery.make",
+    "write_contraction": "io.stages.contraction",
+    "write_skeleton": "io.stages.skeleton",
+    "write_surfaces": "io.stages.surface",
 }
 __all__ = sorted(_HOME)  # noqa: PLE0605
 

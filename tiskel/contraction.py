@@ -18,12 +18,12 @@ from tiskel.arrays import (
     resolved,
 )
 from tiskel.errors import TiskelError
-from tiskel.gls import contract_gls
-from tiskel.lbc import contract_lbc
+from tiskel.geometry.rings import Rings
+from tiskel.methods.laplacian.gls import contract_gls
+from tiskel.methods.laplacian.lbc import contract_lbc
+from tiskel.methods.robust.fronts import contract_robust
+from tiskel.methods.trace import Status, StepRecord, Trace
 from tiskel.params import ContractionParams
-from tiskel.rings import Rings
-from tiskel.robust.fronts import contract_robust
-from tiskel.trace import Status, StepRecord, Trace
 
 LOOPS = {"robust": contract_robust, "gls": contract_gls, "lbc": contract_lbc}
 
@@ -82,10 +82,10 @@ def contract(
 ) -> Contraction:
     """Contract a cloud towards its medial curve.
 
-    Methods: "robust", by fronts over the original cloud (:mod:`tiskel.robust.fronts`),
+    Methods: "robust", by fronts over the original cloud (:mod:`tiskel.methods.robust.fronts`),
     "gls", GLSkeleton (Wen et al. 2024), and "lbc", Laplacian-based contraction
-    (Cao et al. 2010). Departures from print are listed in :mod:`tiskel.lbc` and
-    :mod:`tiskel.reduction`.
+    (Cao et al. 2010). Departures from print are listed in :mod:`tiskel.methods.laplacian.lbc` and
+    :mod:`tiskel.methods.laplacian.reduction`.
 
     Parameters
     ----------

@@ -8,16 +8,16 @@ import numpy as np
 if TYPE_CHECKING:
     import networkx
 
-from tiskel import graph
 from tiskel.arrays import Indices, Numbers, Points, diagonal, normalisation
-from tiskel.collapse import collapse_triangles, inherited_edges
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
+from tiskel.geometry import graph
+from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edges
+from tiskel.methods.laplacian.sampling import front_samples
+from tiskel.methods.robust.checks import doubts
+from tiskel.methods.robust.network import own_axes
+from tiskel.methods.robust.pipeline import build, nodes_of_points
 from tiskel.params import SkeletonParams
-from tiskel.robust.build import build, nodes_of_points
-from tiskel.robust.doubts import doubts
-from tiskel.robust.network import own_axes
-from tiskel.sampling import front_samples
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
 
     What method robust contracted becomes the graph of its sections, cleaned,
     and fitted to the original cloud as a curve of round cones
-    (:mod:`tiskel.robust.build`); ``contracted`` of the result are the points'
+    (:mod:`tiskel.methods.robust.pipeline`); ``contracted`` of the result are the points'
     feet on it, and the warnings say where it is in doubt.
 
     What lbc and gls contracted, and everything if ``params.raw``, is sampled by

@@ -9,7 +9,7 @@ from plyfile import PlyData, PlyElement
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import load_cloud, read_contraction, read_skeleton
-from tiskel.shapes.catalogue import SHAPES
+from tiskel.gallery.catalogue import SHAPES
 
 
 def test_stages_chain_through_pipes_with_data_alone_on_stdout(tiskel: Runner, cloud: Path) -> None:

@@ -10,8 +10,8 @@ import pytest
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import contract, extract_skeleton, make_shape, read_surfaces, shape_graph, write_skeleton
-from tiskel.io.roll_files import COLUMNS
-from tiskel.shapes.make import ShapeParams
+from tiskel.gallery.make import ShapeParams
+from tiskel.io.stages.roll import COLUMNS
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tiskel.neighbourhood import principal_axes
+from tiskel.geometry.neighbours import principal_axes
 
 GENERATOR = np.random.default_rng(3)
 SHAPES: dict[str, list[float]] = {

@@ -3,8 +3,8 @@
 import numpy as np
 
 from reference.cones import cone_residuals
-from tiskel.robust.cones import distances, feet
-from tiskel.robust.curve import ConeCurve
+from tiskel.methods.robust.curve import ConeCurve
+from tiskel.methods.robust.fit import distances, feet
 
 GENERATOR = np.random.default_rng(12)
 NODES = np.concatenate([GENERATOR.normal(size=(9, 3)), np.ones((2, 3))])  # the last edge has no length

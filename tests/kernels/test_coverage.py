@@ -6,10 +6,10 @@ from scipy.spatial import cKDTree
 
 from reference.quality import cell_of, covered_cells
 from tiskel.arrays import Points
+from tiskel.geometry.neighbours import morton_curve
 from tiskel.kernels import coverage as kernel
-from tiskel.neighbourhood import morton_curve
-from tiskel.quality import boundedness
-from tiskel.quality.centredness import slab_members
+from tiskel.metrics import boundedness
+from tiskel.metrics.centredness import slab_members
 
 GENERATOR = np.random.default_rng(8)
 AREAS = boundedness.cell_areas(kernel.SIDE)

@@ -5,8 +5,8 @@ import pytest
 
 from reference import laplacian as plain
 from tiskel.arrays import Points
-from tiskel.neighbourhood import cloud_rings
-from tiskel.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
+from tiskel.geometry.neighbours import cloud_rings
+from tiskel.geometry.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
 
 CAP = 1e4
 

@@ -6,7 +6,7 @@ import pytest
 from reference import neighbours as plain
 from reference.fixtures import Load
 from tiskel.arrays import Points
-from tiskel.neighbourhood import nearest_neighbours
+from tiskel.geometry.neighbours import nearest_neighbours
 
 
 def normalize(points: Points) -> Points:

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from reference import gls as plain
 from reference.rings import same
 from tiskel.arrays import Points
-from tiskel.neighbourhood import cloud_rings
-from tiskel.reduction import matching, merge, rename, stage_function
-from tiskel.rings import Rings, smallest_distances
+from tiskel.geometry.neighbours import cloud_rings
+from tiskel.geometry.rings import Rings, smallest_distances
+from tiskel.methods.laplacian.reduction import matching, merge, rename, stage_function
 
 
 def as_lists(rings: Rings) -> list[tuple[list[int], bool]]:

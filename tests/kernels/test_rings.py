@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from reference import rings as plain
 from reference.fixtures import Load
 from tiskel.arrays import normalisation
-from tiskel.lbc import published_rings
-from tiskel.neighbourhood import cloud_rings, one_rings
+from tiskel.geometry.neighbours import cloud_rings, one_rings
+from tiskel.methods.laplacian.lbc import published_rings
 from tiskel.params import published_neighbours
 
 FLAT = np.array([[[1.0, 0, 0], [0, 1.0, 0]]])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reference.quality import winding_number
-from tiskel.quality.surface import SOFTENING, Surface
+from tiskel.geometry.oriented import SOFTENING, Surface
 
 GENERATOR = np.random.default_rng(5)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from tiskel.arrays import Numbers
-from tiskel.surfaces.strips import fit_strip
+from tiskel.geometry.bspline import fit_strip
 from tiskel.surfaces.tube import V_STOP, Tube
 
 

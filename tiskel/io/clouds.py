@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from tiskel.arrays import Indices, Points
 from tiskel.errors import TiskelError
+from tiskel.geometry.mesh import sample_mesh
 from tiskel.io import open3d_formats, ply, text
 from tiskel.io.streams import STANDARD, read_bytes
-from tiskel.meshes import sample_mesh
 
 TEXT_FORMATS = (".xyz", ".pts", ".csv", ".txt")
 MESH_SAMPLES = 4096  #: points that a mesh is sampled to where no number is asked for

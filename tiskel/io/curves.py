@@ -12,8 +12,8 @@ from tiskel.arrays import Indices, Points
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.clouds import TEXT_FORMATS, parse_cloud
-from tiskel.io.skeleton_file import parse_skeleton
-from tiskel.io.stage import stage_of
+from tiskel.io.stages.skeleton import parse_skeleton
+from tiskel.io.stages.which import stage_of
 from tiskel.io.streams import STANDARD, read_bytes
 
 FORMATS = (".ply", ".obj", ".swc", ".graphml", ".json", *TEXT_FORMATS, ".npy", ".npz")

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 import tiskel
-from tiskel import graph
-from tiskel.io.skeleton_file import dump_skeleton
+from tiskel.geometry import graph
+from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.skeleton import Skeleton
 
 

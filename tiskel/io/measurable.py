@@ -8,10 +8,10 @@ import numpy as np
 from tiskel.arrays import Indices, Points
 from tiskel.errors import TiskelError
 from tiskel.io.clouds import load_cloud, parse_cloud
-from tiskel.io.contraction_file import parse_contraction
 from tiskel.io.curves import load_curve, parse_curve
-from tiskel.io.skeleton_file import parse_skeleton
-from tiskel.io.stage import stage_of
+from tiskel.io.stages.contraction import parse_contraction
+from tiskel.io.stages.skeleton import parse_skeleton
+from tiskel.io.stages.which import stage_of
 from tiskel.io.streams import read_bytes
 
 

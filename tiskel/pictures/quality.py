@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from tiskel.arrays import Numbers, Points, finite_rows
+from tiskel.metrics.result import Quality
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, heat, new_figure, rendered
-from tiskel.quality.result import Quality
 
 COLUMNS, WIDTH, HEIGHT = 4, 14.0, 3.1  # inches; of one row
 BINS = np.linspace(0, 1, 26)

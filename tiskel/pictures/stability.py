@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from tiskel.contraction import Contraction
+from tiskel.metrics.stability import SPAN, Stability, StepStability
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
-from tiskel.stability import SPAN, Stability, StepStability
 
 WIDTH, HEIGHT, TITLE = 3.2, 2.9, 0.4  # inches per panel
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
-from tiskel.surfaces.strips import WEIGHTS, Strip, fit_strip
+from tiskel.geometry.bspline import WEIGHTS, Strip, fit_strip
 from tiskel.surfaces.tube import V_STOP
 
 DENSE = 8  # places that the length is measured at, per interval

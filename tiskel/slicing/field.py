@@ -3,8 +3,8 @@
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
+from tiskel.geometry.bspline import Strip, fit_strip
 from tiskel.slicing.axis import EXACT
-from tiskel.surfaces.strips import Strip, fit_strip
 from tiskel.surfaces.tube import V_STOP
 
 PARALLEL = 0.2  # sine of the angle between tangent and m that is too small

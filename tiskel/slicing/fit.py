@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
 from tiskel.errors import TiskelError
+from tiskel.geometry.bspline import Strip
 from tiskel.io.curves import Curve
 from tiskel.params import SurfaceParams
 from tiskel.skeleton import Skeleton
@@ -19,7 +20,6 @@ from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
 from tiskel.slicing.rings import Ring, around, cut, frames_along, spacing_of
 from tiskel.slicing.sections import Case, Section, fit_section
 from tiskel.slicing.series import chosen_order, fit_sections, joined_series, without_unlike
-from tiskel.surfaces.strips import Strip
 from tiskel.surfaces.tube import V_STOP, Tube
 
 TINY = 1e-300  # for quotients that may be of nothing

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Numbers, Points
-from tiskel.quality.ellipse import fit_ellipse
+from tiskel.geometry.bspline import Strip
+from tiskel.geometry.ellipse import fit_ellipse
 from tiskel.slicing.fitted import FittedSurface
 from tiskel.slicing.sections import Section
-from tiskel.surfaces.strips import Strip
 from tiskel.surfaces.tube import V_STOP, Tube, radius_of
 
 AROUND, PER_SLICE = 96, 3  # vertices around the curve, and rows of them per slice

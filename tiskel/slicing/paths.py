@@ -6,9 +6,9 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from tiskel import graph
 from tiskel.arrays import Indices, Points
 from tiskel.errors import TiskelError
+from tiskel.geometry import graph
 
 LEAST_NODES = 3  # fewer have no direction to follow
 

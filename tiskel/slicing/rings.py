@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Numbers, Points
-from tiskel.surfaces.strips import Strip
+from tiskel.geometry.bspline import Strip
 from tiskel.surfaces.tube import Moving, moving_frame
 
 SECTORS = 36  # directions that a section is looked at in

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from tiskel.geometry.bspline import Strip, fit_strip
 from tiskel.params import SurfaceParams
 from tiskel.slicing.rings import Ring
 from tiskel.slicing.sections import Case, Section, fit_section, left_out_error
-from tiskel.surfaces.strips import Strip, fit_strip
 from tiskel.surfaces.tube import V_STOP
 
 UNLIKE, LEAST_UNLIKE = 3.0, 0.08  # median errors, and mean radii, that a section is off its points at most

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
+from tiskel.geometry.bspline import Strip, joined
 from tiskel.surfaces.jets import Jet, Scalar, Vector, combined, cross, dot, plus, scaled
-from tiskel.surfaces.strips import Strip, joined
 
 V_STOP = pi  # v runs from 0 to pi along the skeleton curve
 

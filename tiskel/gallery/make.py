@@ -1,0 +1,102 @@
+"""Clouds of named shapes, clean or degraded the way scans are."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Points
+from tiskel.errors import TiskelError
+from tiskel.gallery.catalogue import SHAPES
+from tiskel.geometry import graph
+from tiskel.geometry.round_cones import ConeGraph, sample_union
+from tiskel.skeleton import Skeleton
+
+PATCHES = 8  # holes that --missing is spread over
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShapeParams:
+    """Settings of :func:`make_shape`."""
+
+    count: int = 4096  #: points of the result
+    noise: float = 0.0  #: standard deviation of isotropic Gaussian noise, in smallest radii of the shape
+    missing: float = 0.0  #: share of the surface that is cut out in patches
+    uneven: float = 1.0  #: ratio of the highest to the lowest density, along the longest axis
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.count < 1:
+            raise TiskelError(f"the number of points must be positive, got {self.count}")
+        if not (self.noise >= 0 and np.isfinite(self.noise)):
+            raise TiskelError(f"noise must be a share of the smallest radius, 0 or more, got {self.noise}")
+        if not 0 <= self.missing < 1:
+            raise TiskelError(f"missing must be a share of the surface, at least 0 and below 1, got {self.missing}")
+        if not (self.uneven >= 1 and np.isfinite(self.uneven)):
+            raise TiskelError(f"uneven is the ratio of highest to lowest density, 1 or more, got {self.uneven}")
+
+
+def shape_graph(name: str) -> ConeGraph:
+    """Return the round cones of a named shape."""
+    if name not in SHAPES:
+        raise TiskelError(f"no shape is called {name!r}; choose one of {', '.join(SHAPES)}")
+    return SHAPES[name]()
+
+
+def make_shape(shape: ConeGraph, params: ShapeParams | None = None) -> tuple[Points, Skeleton]:
+    """Return a cloud (n, 3) of the shape and its analytic skeleton.
+
+    The surface is sampled uniformly by area, then thinned towards one end of
+    its longest axis, cut by patches and blurred, as the settings say; the same
+    seed gives the same bytes.
+    """
+    params = params or ShapeParams()
+    generator = np.random.default_rng(params.seed)
+    before_cut = int(np.ceil(params.count / (1 - params.missing)))
+    points = _uneven(shape, before_cut, params.uneven, generator)
+    points = _cut(points, len(points) - params.count, generator)
+    points = points + generator.normal(size=points.shape) * params.noise * shape.radii.min()
+    return points, analytic_skeleton(shape, points)
+
+
+def _uneven(shape: ConeGraph, count: int, ratio: float, generator: np.random.Generator) -> Points:
+    """Sample more than needed and keep each point with a probability that falls exponentially along the axis."""
+    if ratio == 1:
+        return sample_union(shape, count, generator)
+    kept: list[Points] = []
+    while sum(map(len, kept)) < count:
+        points = sample_union(shape, 2 * count, generator)
+        centred = shape.nodes - shape.nodes.mean(axis=0)
+        axis = np.linalg.svd(centred, full_matrices=False)[2][0]
+        low, high = (shape.nodes @ axis).min(), (shape.nodes @ axis).max()
+        share = np.clip((points @ axis - low) / (high - low), 0, 1)
+        kept.append(points[generator.random(len(points)) < ratio**-share])
+    return np.concatenate(kept)[:count]
+
+
+def _cut(points: Points, surplus: int, generator: np.random.Generator) -> Points:
+    """Remove so many points in round patches about random points."""
+    for patch in range(PATCHES):
+        size = surplus * (patch + 1) // PATCHES - surplus * patch // PATCHES
+        if size:
+            centre = points[generator.integers(len(points))]
+            points = np.delete(points, cKDTree(points).query(centre, k=[*range(1, size + 1)])[1], axis=0)
+    return points
+
+
+def analytic_skeleton(shape: ConeGraph, cloud: Points) -> Skeleton:
+    """Return the graph of the round cones as a skeleton of the cloud, each point with its nearest node."""
+    everyone = np.arange(len(cloud), dtype=np.int32)
+    none = np.empty((0, 3))
+    return Skeleton(
+        nodes=shape.nodes,
+        edges=shape.edges,
+        radius=shape.radii,
+        branches=graph.branches(len(shape.nodes), shape.edges),
+        node_of_point=cKDTree(shape.nodes).query(cloud)[1].astype(np.int32),
+        cloud=cloud,
+        input_rows=everyone,
+        contracted=none,
+        origin=none,
+        rows=everyone[:0],
+    )

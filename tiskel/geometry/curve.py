@@ -1,0 +1,90 @@
+"""Places on a curve skeleton where it is measured, and what its vertices look like."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.geometry import graph
+
+
+@dataclass(frozen=True)
+class CurveSamples:
+    """Places along a curve.
+
+    Attributes
+    ----------
+    points : (q, 3).
+    edges : (q,) the edge that each lies on.
+    directions : (q, 3) unit tangents; zero where there is none (joints, edges without length).
+    """
+
+    points: Points
+    edges: Indices
+    directions: Points
+
+    @property
+    def directed(self) -> Mask:
+        """Which places have a direction."""
+        return np.asarray(self.directions.any(axis=1))
+
+
+def curve_samples(nodes: Points, edges: Indices, count: int) -> CurveSamples:
+    """Return about so many places on a curve with nodes (v, 3) and edges (e, 2).
+
+    Each edge gets its share of them by length, at least one, evenly, its first
+    vertex excluded and its last included. The direction is the edge's; at a
+    vertex with two neighbours the tangent of the circle through the three; at a
+    joint there is none.
+    """
+    lengths = graph.edge_lengths(nodes, edges)
+    total = lengths.sum()
+    shares = np.floor(count * lengths / total + 0.5) if total > 0 else np.zeros(len(edges))
+    each = np.maximum(1, shares).astype(int)
+    edge = np.repeat(np.arange(len(edges)), each)
+    step = np.arange(len(edge)) - np.repeat(np.cumsum(each) - each, each) + 1
+    share = step / each[edge]
+    first, last = edges[edge, 0], edges[edge, 1]
+    at_vertex = step == each[edge]
+    between = nodes[first] + share[:, None] * (nodes[last] - nodes[first])
+    points = np.where(at_vertex[:, None], nodes[last], between)
+    directions = unit(nodes[last] - nodes[first])
+    tangents = vertex_tangents(nodes, edges)
+    turning = at_vertex & (graph.degrees(len(nodes), edges)[last] != 1)
+    directions[turning] = tangents[last[turning]]
+    return CurveSamples(np.ascontiguousarray(points), edge.astype(np.int32), directions)
+
+
+def unit(vectors: Points) -> Points:
+    """Return vectors (n, 3) at length one; those of length zero stay zero."""
+    lengths = np.linalg.norm(vectors, axis=1)[:, None]
+    return np.asarray(np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0))
+
+
+def vertex_tangents(nodes: Points, edges: Indices) -> Points:
+    """Return (v, 3) the tangent of the circle through a vertex and its two neighbours, zero at other vertices.
+
+    An inversion about the vertex maps the circle to the line through a / |a|^2
+    and b / |b|^2, which is parallel to the tangent.
+    """
+    tangents = np.zeros_like(nodes)
+    vertices, before, after = two_sided(nodes, edges)
+    inverse = [unit(side) / np.maximum(np.linalg.norm(side, axis=1), TINY)[:, None] for side in (before, after)]
+    tangents[vertices] = unit(inverse[1] - inverse[0])
+    return tangents
+
+
+TINY = np.finfo(float).tiny
+
+
+def two_sided(nodes: Points, edges: Indices) -> tuple[Indices, Points, Points]:
+    """Return the vertices (d,) with exactly two neighbours, and the vectors (d, 3) to either."""
+    before, vertices, after = graph.passages(len(nodes), edges).T
+    return vertices, nodes[before] - nodes[vertices], nodes[after] - nodes[vertices]
+
+
+def turns(before: Points, after: Points) -> Numbers:
+    """Return (d,) D_n, the angle between pairs of vectors (d, 3) as a share of pi; NaN where one has no length."""
+    cosine = np.einsum("ij,ij->i", unit(before), unit(after))
+    missing = ~(before.any(axis=1) & after.any(axis=1))
+    return np.where(missing, np.nan, np.arccos(np.clip(cosine, -1, 1)) / np.pi)

@@ -1,0 +1,124 @@
+"""Neighbours, principal axes and one-rings of a cloud: the kernels, with their arrays laid out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tiskel.arrays import Indices, Numbers, Points
+from tiskel.geometry.rings import Rings
+
+Axes = Numbers  #: shape (n, 3, 3), rows by descending eigenvalue
+
+
+def nearest_neighbours(points: Points, k: int) -> tuple[Indices, Numbers]:
+    """Return the k nearest of each point, itself included.
+
+    Parameters
+    ----------
+    points : (n, 3), in any unit, k <= n.
+
+    Returns
+    -------
+    neighbours : (n, k) int32, by distance, ties by index.
+    squares : (n, k), squared distances.
+    """
+    from tiskel.kernels import neighbours as kernel
+
+    curve = morton_curve(points)
+    nearest = np.empty((len(points), k), np.int32)
+    squares = np.empty((len(points), k))
+    kernel.nearest(curve.points, curve.order, curve.codes, curve.low, curve.per_length, k, nearest, squares)
+    return nearest, squares
+
+
+@dataclass(frozen=True)
+class MortonCurve:
+    """A cloud along the Morton curve, where neighbours in the order are mostly neighbours in space.
+
+    Attributes
+    ----------
+    points : (n, 3), in this order; order : (n,) int32, their rows; codes : (n,) int64, ascending.
+    low, per_length : (3,) corner of the finest grid, and its cells per length.
+    """
+
+    points: Points
+    order: Indices
+    codes: npt.NDArray[np.int64]
+    low: Numbers
+    per_length: float
+
+    def places(self, queries: Points) -> Indices:
+        """Return where in the order queries (m, 3) would stand; those outside the box at its border."""
+        from tiskel.kernels import neighbours as kernel
+
+        codes = np.empty(len(queries), np.int64)
+        inside = np.clip(queries, self.points.min(axis=0), self.points.max(axis=0))
+        kernel.morton_codes(np.ascontiguousarray(inside), self.low, self.per_length, codes)
+        return np.searchsorted(self.codes, codes).astype(np.int32)
+
+
+def morton_curve(points: Points) -> MortonCurve:
+    """Return the points (n, 3) along the Morton curve."""
+    from tiskel.kernels import neighbours as kernel
+
+    low = points.min(axis=0)
+    per_length = (2**kernel.LEVELS - 1) / (float(np.ptp(points, axis=0).max()) or 1.0)
+    codes = np.empty(len(points), np.int64)
+    kernel.morton_codes(points, low, per_length, codes)
+    order = np.argsort(codes, kind="stable").astype(np.int32)
+    return MortonCurve(np.ascontiguousarray(points[order]), order, codes[order], low, per_length)
+
+
+def principal_axes(points: Points, neighbours: Indices) -> tuple[Numbers, Axes]:
+    """Return eigenvalues (n, 3), descending, and eigenvectors (n, 3, 3), as rows, of neighbourhood covariances."""
+    from tiskel.kernels import axes as kernel
+
+    values = np.empty((len(neighbours), 3))
+    axes = np.empty((len(neighbours), 3, 3))
+    kernel.principal_axes(points, neighbours, values, axes)
+    return values, axes
+
+
+def one_rings(points: Points, centres: Indices, candidates: Indices, planes: Numbers) -> Rings:
+    """Return the Delaunay one-ring of each centre among its candidates, projected on a plane.
+
+    Parameters
+    ----------
+    points : (n, 3).
+    centres : (m,) rows of points.
+    candidates : (m, w) rows of points, -1 pads; the centre and points projected onto it are ignored.
+    planes : (m, 2, 3), two orthonormal directions each.
+
+    Notes
+    -----
+    Counter-clockwise seen in the plane; a closed ring starts at its nearest
+    member, an open one at its end. Of points in exactly one direction the
+    nearest counts; of points exactly on one empty circle only those that every
+    triangulation has.
+    """
+    from tiskel.kernels import rings as kernel
+
+    shape = candidates.shape
+    members, sizes, closed = (
+        np.empty(shape, np.int32),
+        np.empty(len(centres), np.int32),
+        np.empty(len(centres), np.int32),
+    )
+    flat, order = np.empty((*shape, 2)), np.empty(shape, np.int32)
+    kernel.one_rings(points, centres, candidates, planes, flat, order, members, sizes, closed)
+    width = max(1, int(sizes.max(initial=1)))
+    return Rings(np.ascontiguousarray(members[:, :width]), sizes, closed)
+
+
+def surroundings(points: Points, k: int) -> tuple[Indices, Axes, Rings]:
+    """Return the k nearest neighbours of every point, their principal axes, and the one-rings on the leading two."""
+    neighbours, _ = nearest_neighbours(points, k)
+    _, axes = principal_axes(points, neighbours)
+    everyone = np.arange(len(points), dtype=np.int32)
+    return neighbours, axes, one_rings(points, everyone, neighbours, np.ascontiguousarray(axes[:, :2]))
+
+
+def cloud_rings(points: Points, k: int) -> Rings:
+    """Return the one-ring of every point among its k nearest, on the plane of their two leading axes."""
+    return surroundings(points, k)[2]

@@ -1,0 +1,102 @@
+"""The solid that an oriented cloud encloses, and its handles.
+
+The winding number on a grid of the cloud's own spacing. Where it exceeds a level
+there are cubes; their loops follow from the Euler characteristic,
+components - loops + cavities = vertices - edges + faces - cubes. Thin parts and
+open ends have low winding numbers, so several levels are tried, and what they do
+not agree on is not decided.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage
+
+from tiskel.arrays import Numbers, Points
+from tiskel.geometry.oriented import Surface, checked
+
+LEVELS = (0.25, 0.3, 0.4)  # winding numbers; noise outside stays below, tubes of one spacing's radius rise above
+STEP = 1.2  # of the grid, in spacings
+UNDECIDED = (0.1, 0.6)  # winding numbers about the levels, with what they change within a cell
+MAX_CELLS = 1_000_000
+COARSEST = 2.5  # spacings; on a coarser grid thin parts would be missed
+PROBED = 16384  # points; of larger clouds so many are taken
+
+Grid = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Body:
+    """Whether there is an inside to speak of, and how many handles it has, None where they cannot be told."""
+
+    trusted: bool
+    handles: int | None
+
+
+def body_of(surface: Surface) -> Body:
+    """Return the body inside a surface."""
+    step = -(-len(surface.points) // PROBED)
+    points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
+    thinned = checked(Surface(points, normals, step * surface.areas[::step]), seed=0)
+    return Body(thinned.trusted, solid_loops(thinned)[0])
+
+
+def solid_loops(surface: Surface) -> tuple[int | None, str]:
+    """Return the handles of the solid inside a surface, or None and why they cannot be told."""
+    if not surface.trusted:
+        share = f"{surface.consistency:.0%}"
+        return None, f"the normals agree on an inside at {share} of the points only; the cloud is too sparse or open"
+    low, high = surface.points.min(axis=0), surface.points.max(axis=0)
+    step = _grid_step(high - low, surface.spacing)
+    if step > COARSEST * surface.spacing:
+        return None, f"a grid of {MAX_CELLS} cells is too coarse for the spacing of the points; thin the cloud"
+    winding = _winding_grid(surface, low, high, step)
+    found = [betti_numbers(winding > level)[1] for level in LEVELS]
+    if len(set(found)) > 1:
+        return None, f"{' or '.join(map(str, sorted(set(found))))} handles, depending on the level of the inside"
+    return found[0], ""
+
+
+def _grid_step(extent: Points, spacing: float) -> float:
+    """Return the side of the cells: the spacing's multiple, or what keeps the grid within its limit."""
+    step = STEP * spacing
+    cells = float(np.prod(extent / step + 4))
+    return step * float(np.cbrt(max(1.0, cells / MAX_CELLS)))
+
+
+def _winding_grid(surface: Surface, low: Points, high: Points, step: float) -> Numbers:
+    """Return winding numbers on a grid: at every eighth place, and at all places where it matters.
+
+    These are the ones near the surface, and those between an inside and an
+    outside, as in the holes of a scan; elsewhere it is that of the place before.
+    """
+    axes = [np.arange(a - 1.5 * step, b + 2.5 * step, step) for a, b in zip(low, high, strict=True)]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    coarse = places[::2, ::2, ::2]
+    known = surface.winding_numbers(coarse.reshape(-1, 3)).reshape(coarse.shape[:3])
+    grid = np.kron(known, np.ones((2, 2, 2)))[tuple(slice(len(axis)) for axis in axes)]
+    near = np.zeros(grid.shape, bool)
+    near[tuple(np.round((surface.points - places[0, 0, 0]) / step).astype(int).T)] = True
+    needed = ndimage.binary_dilation(near, np.ones((3, 3, 3)), iterations=2)
+    needed |= ndimage.binary_dilation((grid > UNDECIDED[0]) & (grid < UNDECIDED[1]), np.ones((3, 3, 3)))
+    grid[needed] = surface.winding_numbers(places[needed])
+    return np.asarray(grid)
+
+
+def betti_numbers(cubes: Grid) -> tuple[int, int, int]:
+    """Return components, loops and cavities of a union of closed unit cubes, given as a grid of booleans."""
+    padded = np.pad(cubes, 1)
+    edges = sum(int(_touched(padded, axes).sum()) for axes in ((0, 1), (0, 2), (1, 2)))
+    faces = sum(int(_touched(padded, (axis,)).sum()) for axis in range(3))
+    euler = int(_touched(padded, (0, 1, 2)).sum()) - edges + faces - int(padded.sum())
+    components = int(ndimage.label(padded, np.ones((3, 3, 3)))[1])
+    cavities = int(ndimage.label(~padded)[1]) - 1
+    return components, components + cavities - euler, cavities
+
+
+def _touched(cubes: Grid, axes: tuple[int, ...]) -> Grid:
+    """Return which faces, edges or vertices between cubes, across the given axes, belong to a cube."""
+    for axis in axes:
+        cubes = np.take(cubes, range(1, cubes.shape[axis]), axis) | np.take(cubes, range(cubes.shape[axis] - 1), axis)
+    return cubes

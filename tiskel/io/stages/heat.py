@@ -1,0 +1,49 @@
+"""Measures as a cloud: skeletal points, then places on the curve, with their values as vertex properties."""
+
+from typing import Any
+
+import numpy as np
+
+from tiskel.arrays import Mask, Numbers
+from tiskel.io import ply
+from tiskel.metrics.boundedness import Boundedness
+from tiskel.metrics.result import CurveQuality, PointQuality, Quality
+
+NAMES = ("of_curve", "beta", "bounded", "inside", "centredness", "smoothness")
+
+
+def dump_heat(quality: Quality) -> bytes:
+    """Return a PLY file that CloudCompare shows as scalar fields; NaN where a measure has no value.
+
+    Properties: of_curve (0 skeletal point, 1 sample of the curve, 2 vertex of the curve), beta, bounded, inside,
+    centredness, smoothness.
+    """
+    parts = [_points(quality.points), *_curve(quality.curve)]
+    places = np.concatenate([part[0] for part in parts])
+    values = np.concatenate([part[1] for part in parts])
+    columns: dict[str, Any] = {**ply.xyz(places), **dict(zip(NAMES, values.T.astype(np.float32), strict=True))}
+    return ply.dump([ply.element("vertex", columns)], "metrics", {"params": ply.plain(quality.params)})
+
+
+Part = tuple[Numbers, Numbers]
+
+
+def _points(p: PointQuality | None) -> Part:
+    if p is None:
+        return np.zeros((0, 3)), np.zeros((0, len(NAMES)))
+    return p.points, _columns(0, len(p.points), p.boundedness, p.inside, p.centredness, p.smoothness)
+
+
+def _curve(c: CurveQuality | None) -> list[Part]:
+    if c is None:
+        return []
+    samples = _columns(1, len(c.samples.points), c.boundedness, c.inside, c.centredness, None)
+    vertices = _columns(2, len(c.vertices), None, None, None, c.smoothness)
+    return [(c.samples.points, samples), (c.nodes[c.vertices], vertices)]
+
+
+def _columns(kind: int, count: int, bounded: Boundedness | None, *more: Numbers | Mask | None) -> Numbers:
+    measured = (None, None) if bounded is None else (bounded.beta, bounded.bounded)
+    columns = [np.full(count, float(kind))]
+    columns += [np.full(count, np.nan) if value is None else np.asarray(value, float) for value in (*measured, *more)]
+    return np.stack(columns, axis=1)

@@ -1,0 +1,142 @@
+"""The stage file ``surface.json``: fitted surfaces and all that rolling on them needs. Format 1.
+
+    {"tiskel": version of the writer, "stage": "surface", "format": 1, "source", "params",
+     "rejected": {branch: reason}, "cloud": [[x, y, z], ...],
+     "surfaces": [{"branch", "nodes", "closed", "frame", "note", "length", "radius", "order", "error", "warnings",
+                   "trimmed", "distance": {"mean", "p95", "max"}, "rows",
+                   "axis", "field", "series": coefficients of quintic B-splines,
+                   "sections": [{"v", "case", "points", "gap", "error", "series"}, ...]}, ...]}
+
+Lengths are in the input's unit, angles in radians, rows count from 0 in
+``cloud``. A spline with b rows of coefficients has b - 5 even intervals from
+v = 0 to pi; of a closed surface the last five rows repeat the first five. The
+columns of ``axis`` are x, y, z of the skeleton curve, of ``field`` those of m,
+of ``series`` a0, a1, b1, a2, b2, ...; ``error`` is the RMS misfit over the mean
+radius, ``distance`` that of the fitted points to the mesh of the surface.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tiskel
+from tiskel.errors import TiskelError
+from tiskel.geometry.bspline import DEGREE, Strip
+from tiskel.io import ply
+from tiskel.io.streams import read_bytes, write_bytes
+from tiskel.params import SurfaceParams
+from tiskel.slicing.fitted import FittedSurface, Surfaces
+from tiskel.slicing.sections import Case, Section
+from tiskel.surfaces.tube import V_STOP, Tube
+
+STAGE, FORMAT = "surface", 1
+
+
+def write_surfaces(
+    target: str | Path, surfaces: Surfaces, params: SurfaceParams | None = None, source: dict[str, str] | None = None
+) -> None:
+    """Write a stage file; "-" is standard output."""
+    write_bytes(target, dump_surfaces(surfaces, params, source))
+
+
+def dump_surfaces(
+    surfaces: Surfaces, params: SurfaceParams | None = None, source: dict[str, str] | None = None
+) -> bytes:
+    """Return the bytes of a stage file: the same bytes for the same surfaces."""
+    document = {
+        "tiskel": tiskel.__version__,
+        "stage": STAGE,
+        "format": FORMAT,
+        "source": source or {},
+        "params": None if params is None else ply.plain(params),
+        "rejected": surfaces.rejected,
+        "surfaces": [_surface_document(surface) for surface in surfaces],
+        "cloud": surfaces.cloud.tolist(),
+    }
+    return (json.dumps(document, allow_nan=False) + "\n").encode()
+
+
+def _surface_document(s: FittedSurface) -> dict[str, Any]:
+    return {
+        "branch": s.name, "nodes": s.nodes.tolist(), "closed": s.tube.closed, "frame": s.frame, "note": s.note,
+        "length": s.length, "radius": s.radius, "order": s.order, "error": s.error, "warnings": list(s.warnings),
+        "trimmed": s.trimmed, "distance": s.distance, "rows": s.rows.tolist(),
+        "axis": s.tube.axis.coefficients.tolist(), "field": s.tube.field.coefficients.tolist(),
+        "series": s.tube.series.coefficients.tolist(), "sections": [_section_document(one) for one in s.sections],
+    }  # fmt: skip
+
+
+def _section_document(section: Section) -> dict[str, Any]:
+    error = None if np.isnan(section.error) else section.error
+    return {
+        "v": float(section.v), "case": section.case.value, "points": section.points, "gap": section.gap,
+        "error": error, "series": section.series.tolist(),
+    }  # fmt: skip
+
+
+def read_surfaces(source: str | Path) -> Surfaces:
+    """Read a stage file; "-" is standard input."""
+    return parse_surfaces(read_bytes(source), str(source))
+
+
+def parse_surfaces(data: bytes, name: str) -> Surfaces:
+    """Return the surfaces that a stage file holds."""
+    try:
+        document = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise TiskelError(f"{name} is not a surface file: {error}; write one with tiskel slice") from None
+    if not isinstance(document, dict) or document.get("stage") != STAGE:
+        raise TiskelError(f"{name} is not a surface file; write one with tiskel slice")
+    written = document.get("format")
+    if not isinstance(written, int) or written > FORMAT:
+        raise TiskelError(f"{name} has format {written}, this tiskel reads up to {FORMAT}; install a newer tiskel")
+    try:
+        cloud = np.array(document["cloud"], np.float64).reshape(-1, 3)
+        surfaces = tuple(_surface_of(one, cloud) for one in document["surfaces"])
+        rejected = {str(branch): str(reason) for branch, reason in document["rejected"].items()}
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
+        raise TiskelError(f"{name} is a damaged surface file: {error!r}; run tiskel slice again") from None
+    if not surfaces:
+        raise TiskelError(f"{name} holds no surface; run tiskel slice again")
+    return Surfaces(surfaces, rejected, cloud)
+
+
+def _surface_of(one: dict[str, Any], cloud: "np.ndarray[Any, np.dtype[np.float64]]") -> FittedSurface:
+    closed = bool(one["closed"])
+    axis, field, series = (_strip(one[key], closed) for key in ("axis", "field", "series"))
+    if len({len(strip.coefficients) for strip in (axis, field, series)}) > 1:
+        raise ValueError("axis, field and series have different intervals")
+    rows = np.array(one["rows"], np.int32)
+    if len(rows) and not (rows.min() >= 0 and rows.max() < len(cloud)):
+        raise ValueError(f"row {rows.max()} of {len(cloud)} points")
+    return FittedSurface(
+        tube=Tube(axis, field, series),
+        name=str(one["branch"]),
+        nodes=np.array(one["nodes"], np.int32),
+        frame=str(one["frame"]),
+        sections=tuple(_section_of(section) for section in one["sections"]),
+        trimmed={str(case): int(count) for case, count in one["trimmed"].items()},
+        rows=rows,
+        error=float(one["error"]),
+        distance={key: float(one["distance"][key]) for key in ("mean", "p95", "max")},
+        radius=float(one["radius"]),
+        length=float(one["length"]),
+        cloud=cloud,
+        note=str(one["note"]),
+        warnings=tuple(map(str, one["warnings"])),
+    )
+
+
+def _strip(rows: Any, closed: bool) -> Strip:
+    coefficients = np.array(rows, np.float64)
+    if coefficients.ndim != 2 or len(coefficients) <= DEGREE or not np.isfinite(coefficients).all():
+        raise ValueError(f"a spline needs finite rows of coefficients, more than {DEGREE} of them")
+    return Strip(coefficients, V_STOP, closed)
+
+
+def _section_of(one: dict[str, Any]) -> Section:
+    error = np.nan if one["error"] is None else float(one["error"])
+    series = np.array(one["series"], np.float64)
+    return Section(float(one["v"]), Case(one["case"]), series, int(one["points"]), float(one["gap"]), error)

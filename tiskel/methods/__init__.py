@@ -1,0 +1,1 @@
+"""Ways from a cloud to a curve skeleton, one room each."""

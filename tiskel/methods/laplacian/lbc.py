@@ -1,0 +1,98 @@
+"""Laplacian-based contraction of a point cloud (Cao et al. 2010, section 3; Au et al. 2008 on meshes).
+
+Follows the toolbox where print differs: the ring size is the smallest distance
+(print: the mean), attraction is reset from the first ring sizes at every step
+(not compounded), and the first step is always accepted.
+"""
+
+import numpy as np
+from scipy import sparse
+
+from tiskel.arrays import Indices, Numbers, Points
+from tiskel.geometry.neighbours import surroundings
+from tiskel.geometry.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
+from tiskel.geometry.solve import SingularStep, contracted
+from tiskel.methods.laplacian.toolbox_order import in_published_order
+from tiskel.methods.trace import Status, StepRecord, Stopwatch, Trace
+from tiskel.params import ContractionParams
+
+
+def contract_lbc(points: Points, params: ContractionParams, weights: Numbers | None = None) -> Trace:
+    """Contract until the ratio of summed ring sizes falls by less than the stop ratio; points normalised.
+
+    weights (n,) multiply W_L point by point, as in S-LBC (Meyer et al. 2023), where parts of one thickness share one.
+    """
+    watch = Stopwatch()
+    with watch.measure("rings"):
+        rings = published_rings(points, params.neighbours_for(len(points)))
+    first_sizes = smallest_distances(points, rings)
+    contraction = 1 / (5 * mean_ring_length(points, rings, count_first_twice=True))
+    attraction = np.ones(len(points))
+    here, status = points, Status.MAX_STEPS
+    steps: list[StepRecord] = []
+    history: list[tuple[Indices, Points]] = []
+    everyone = np.arange(len(points), dtype=np.int32)
+    for _ in range(params.step_limit()):
+        step_watch = Stopwatch()
+        try:
+            there = one_step(here, rings, contraction, attraction, params, step_watch, weights)
+        except SingularStep:
+            status = Status.SINGULAR
+            break
+        sizes = smallest_distances(there, rings)
+        ratio = float(sizes.sum() / first_sizes.sum())
+        if steps and grew(there, points, params):
+            status = Status.BOX_GREW
+            break
+        if steps and steps[-1].ring_ratio - ratio < params.stop_ratio:
+            status = Status.CONVERGED
+            break
+        steps.append(StepRecord(contraction, ratio, None, None, len(points), step_watch.seconds))
+        history.append((everyone, there))
+        here = there
+        contraction, attraction = next_weights(contraction, first_sizes, sizes, params)
+    never = np.full(len(points), -1, np.int32)
+    return Trace(here, everyone, rings, never, never, tuple(history), tuple(steps), status, watch.seconds["rings"])
+
+
+def published_rings(points: Points, k: int) -> Rings:
+    """Return the one-rings of the cloud in the order of the toolbox, which its first weight depends on."""
+    neighbours, _, rings = surroundings(points, k)
+    return in_published_order(points, neighbours, rings)
+
+
+def one_step(
+    here: Points,
+    rings: Rings,
+    contraction: float,
+    attraction: Points,
+    params: ContractionParams,
+    watch: Stopwatch,
+    weights: Numbers | None = None,
+) -> Points:
+    """Return the contracted cloud: the Laplacian of the cloud as it is, over its original rings, solved once."""
+    with watch.measure("laplacian"):
+        laplacian = weighted(cotangent_laplacian(here, rings, params.cotangent_cap), weights)
+    with watch.measure("solve"):
+        return contracted(laplacian, contraction, attraction, here, params.solver)
+
+
+def weighted(laplacian: sparse.csr_array, weights: Numbers | None) -> sparse.csr_array:
+    """Return the Laplacian with its rows times the weights (n,): what multiplies W_L of a point."""
+    return laplacian if weights is None else sparse.csr_array(sparse.diags_array(weights) @ laplacian)
+
+
+def grew(points: Points, original: Points, params: ContractionParams) -> bool:
+    """Tell whether a side of the bounding box has grown past the limit."""
+    return bool((np.ptp(points, axis=0) > params.box_growth * np.ptp(original, axis=0)).any())
+
+
+def next_weights(
+    contraction: float, first_sizes: Points, sizes: Points, params: ContractionParams
+) -> tuple[float, Points]:
+    """W_L <- s_L W_L; W_H,i <- W_H(0) S_i(0) / S_i(k); both capped (Cao et al. 2010, section 3.3)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        attraction = np.nan_to_num(first_sizes / sizes, nan=1.0, posinf=np.inf)
+    return min(contraction * params.growth, params.max_contraction_weight), np.minimum(
+        attraction, params.max_attraction_weight
+    )

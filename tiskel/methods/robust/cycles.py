@@ -1,0 +1,131 @@
+"""Cycles that are no loops of the body.
+
+A stride of the front that falls apart, over a hole in the scan or by chance,
+makes a cycle in the graph of sections. It is no loop of the body if it bounds a
+disc inside it: if the straight lines between its two sides, level by level, stay
+inside. What is inside, the winding number tells, which closes holes.
+"""
+
+import numpy as np
+
+from tiskel.arrays import Indices, Mask
+from tiskel.geometry.oriented import Surface
+from tiskel.methods.robust.curve import ConeCurve, contract_nodes
+from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.sections import centred
+
+ROUNDS = 100  # of contraction; each takes away at least one cycle
+ALONG = np.array([0.25, 0.5, 0.75])  # where a line between two sides is probed
+SHARE_INSIDE = 0.5  # of the winding number along the cycle itself, which holes lower
+LOWEST, HIGHEST = 0.4, 1.0  # what that is held to be at least and at most
+FRAGMENT = 0.3  # of the points of the other side: too few to know their own centre
+SMALL = 4  # nodes: hardly a loop of the body; a line inside for the most part, or to a fragment, will do
+CLOSE = 0.5  # spacings; such nodes are one
+
+
+def without_filled_cycles(curve: ConeCurve, network: Network, surface: Surface, *, fitted: bool) -> ConeCurve:
+    """Contract the cycles that bound a disc inside the body.
+
+    Nodes of sections are centred anew after that. Fitted ones are where they
+    should be: their two sides must run within one another, and go to their mean.
+    """
+    for _ in range(ROUNDS):
+        cycles = short_cycles(curve)
+        if not cycles:
+            break
+        rungs, owner = _rungs(cycles, curve)
+        one = _inside(rungs, owner, cycles, curve, surface)
+        one &= _overlapping(rungs, curve) if fitted else True
+        filled = np.bincount(owner[~one], minlength=len(cycles)) == 0
+        if not filled.any():
+            break
+        curve = contract_nodes(curve, _contraction(cycles, filled, rungs, owner, curve.levels), mean=fitted)
+        curve = curve if fitted else centred(curve, network)
+    return curve
+
+
+def short_cycles(curve: ConeCurve) -> list[list[int]]:
+    """Return the shortest cycles through each node and two neighbours on one side of the front, shortest first."""
+    around, levels = curve.around(), curve.levels.tolist()
+    found: dict[tuple[int, ...], list[int]] = {}
+    for node, others in enumerate(around):
+        for i, a in enumerate(others):
+            for b in others[:i]:
+                if (levels[a] - levels[node]) * (levels[b] - levels[node]) > 0:
+                    way = _way(around, a, b, node)
+                    if way:
+                        found[tuple(sorted([node, *way]))] = [node, *way]
+    return [found[key] for key in sorted(found, key=lambda key: (len(key), key))]
+
+
+def _way(around: list[list[int]], a: int, b: int, without: int) -> list[int]:
+    """Return a shortest way from b to a around a node, empty where there is none."""
+    before, todo = {a: -1}, [a]
+    while todo and b not in before:
+        reached = []
+        for node in todo:
+            for other in around[node]:
+                if other != without and other not in before:
+                    before[other] = node
+                    reached.append(other)
+        todo = reached
+    way, at = [], b if b in before else -1
+    while at >= 0:
+        way.append(at)
+        at = before[at]
+    return way
+
+
+def _rungs(cycles: list[list[int]], curve: ConeCurve) -> tuple[Indices, Indices]:
+    """Return pairs (r, 2) of nodes across the cycles, the larger section first, and the cycle of each."""
+    size = curve.counts
+    pairs, owner = [], []
+    for number, cycle in enumerate(cycles):
+        top = int(np.abs(curve.levels[cycle] - curve.levels[cycle[0]]).argmax())
+        sides = cycle[1:top], cycle[:top:-1]
+        for one, other in (sides, sides[::-1]) if all(sides) else ((cycle[1:], cycle[:1]),):
+            for node in one:
+                across = other[int(np.abs(curve.levels[other] - curve.levels[node]).argmin())]
+                pairs.append((node, across) if size[node] >= size[across] else (across, node))
+                owner.append(number)
+    return np.array(pairs, np.int32), np.array(owner, np.int32)
+
+
+def _inside(rungs: Indices, owner: Indices, cycles: list[list[int]], curve: ConeCurve, surface: Surface) -> Mask:
+    """Tell which lines stay inside; towards a fragment only up to its half."""
+    start, stop = curve.nodes[rungs[:, 0]], curve.nodes[rungs[:, 1]]
+    probes = start[:, None] + ALONG[None, :, None] * (stop - start)[:, None]
+    winding = surface.winding_numbers(probes.reshape(-1, 3)).reshape(-1, len(ALONG))
+    own = surface.winding_numbers(curve.nodes)
+    level = SHARE_INSIDE * np.array([np.clip(np.median(own[cycle]), LOWEST, HIGHEST) for cycle in cycles])
+    size = curve.counts
+    fragment = size[rungs[:, 1]] < FRAGMENT * size[rungs[:, 0]]
+    winding[fragment, -1] = np.inf
+    close = np.linalg.norm(start - stop, axis=1) < CLOSE * surface.spacing
+    inside = (winding > level[owner][:, None]).all(axis=1) | close
+    small = np.array([len(cycle) for cycle in cycles])[owner] <= SMALL
+    return np.asarray(inside | small & (fragment | (winding.mean(axis=1) > level[owner])))
+
+
+def _overlapping(rungs: Indices, curve: ConeCurve) -> Mask:
+    """Tell which lines end within the ball at their other end."""
+    length = np.linalg.norm(curve.nodes[rungs[:, 0]] - curve.nodes[rungs[:, 1]], axis=1)
+    return np.asarray(length < curve.radii[rungs].max(axis=1))
+
+
+def _contraction(cycles: list[list[int]], filled: Mask, rungs: Indices, owner: Indices, levels: Indices) -> Indices:
+    """Return for each node the one that takes its place: both sides of filled cycles that do not touch become one.
+
+    Level by level; all at once only where the sides have no level in common.
+    """
+    into, taken = np.arange(len(levels), dtype=np.int32), np.zeros(len(levels), bool)
+    for number in np.flatnonzero(filled):
+        if taken[cycles[number]].any():
+            continue
+        taken[cycles[number]] = True
+        pairs = rungs[owner == number]
+        level = levels[pairs[:, 0]] == levels[pairs[:, 1]]
+        for pair in pairs[level] if level.any() else pairs:
+            low, high = np.sort(into[pair])
+            into[into == high] = low
+    return into

@@ -1,0 +1,105 @@
+"""Which points are neighbours along the surface, and what the neighbourhood says about it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
+from tiskel.geometry.oriented import Surface
+from tiskel.geometry.rings import Rings
+
+NORMAL_NEIGHBOURS = 12  # the point included; the plane through them
+AREA_NEIGHBOURS = 8  # in a disc about the point
+SPACING_NEIGHBOURS = 4  # as many lie within 1.13 spacings on an even surface
+FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour
+ALONG_NORMALS = 0.75  # cosine: such a step leaves the surface at both of its ends
+
+
+@dataclass(frozen=True)
+class Network:
+    """A cloud and its neighbour graph.
+
+    Attributes
+    ----------
+    points : (n, 3); normals : (n, 3), of unit length, not oriented; areas, spacings : (n,).
+    neighbours : (n, k) int32, by distance, the point itself first; kept : (n, k) bool, which of them count.
+    edges : (e, 2) int32, lower row first; lengths : (e,).
+    """
+
+    points: Points
+    normals: Points
+    areas: Numbers
+    spacings: Numbers
+    neighbours: Indices
+    kept: Mask
+    edges: Indices
+    lengths: Numbers
+
+    @property
+    def spacing(self) -> float:
+        return float(np.median(self.spacings))
+
+    def graph(self, weights: Numbers) -> sparse.csr_array:
+        """Return the upper triangle of the graph's matrix."""
+        count = len(self.points)
+        return sparse.coo_array((weights, (self.edges[:, 0], self.edges[:, 1])), shape=(count, count)).tocsr()
+
+    def averaging(self) -> sparse.csr_array:
+        """Return the matrix (n, n) that replaces values by their mean over a point and its neighbours."""
+        half = self.graph(np.ones(len(self.edges)))
+        whole = sparse.csr_array(half + half.T + sparse.eye_array(len(self.points), format="csr"))
+        return sparse.csr_array(sparse.diags_array(1 / whole.sum(axis=1)) @ whole)
+
+    def rings(self) -> Rings:
+        """Return the neighbours that count as open rings, nearest first."""
+        sizes = self.kept.sum(axis=1).astype(np.int32)
+        members = np.full((len(sizes), max(1, int(sizes.max(initial=1)))), -1, np.int32)
+        members[np.arange(members.shape[1]) < sizes[:, None]] = self.neighbours[self.kept]
+        return Rings(members, sizes, np.zeros_like(sizes))
+
+    def oriented(self, contracted: Points) -> Surface:
+        """Return the surface with normals away from where the points (n, 3) contract to."""
+        outward = np.einsum("ij,ij->i", self.points - contracted, self.normals)
+        return Surface(self.points, self.normals * np.where(outward < 0, -1.0, 1.0)[:, None], self.areas)
+
+
+def own_axes(points: Points) -> Numbers:
+    """Return (3, 3) the cloud's principal axes as rows, each towards its longer tail.
+
+    Winding numbers are summed over blocks of a grid, so they depend a little on
+    how the cloud lies in it. In its own axes it always lies the same.
+    """
+    offset = points - points.mean(axis=0)
+    axes = np.linalg.eigh(offset.T @ offset)[1].T
+    return np.asarray(axes * np.where(((offset @ axes.T) ** 3).sum(axis=0) < 0, -1.0, 1.0)[:, None])
+
+
+def neighbour_network(points: Points, k: int) -> Network:
+    """Return the network of a cloud (n, 3) from its k nearest neighbours.
+
+    Left out are steps that run along the normals at both ends, which would join
+    the sides of a narrow gap, and steps to points that stand apart.
+    """
+    neighbours, squares = nearest_neighbours(points, min(k, len(points)))
+    normals = principal_axes(points, np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS]))[1][:, 2]
+    steps, lengths = points[neighbours] - points[:, None], np.sqrt(squares)
+    here = np.abs(np.einsum("nkc,nc->nk", steps, normals))
+    there = np.abs(np.einsum("nkc,nkc->nk", steps, normals[neighbours]))
+    disc = min(AREA_NEIGHBOURS, neighbours.shape[1] - 1)
+    spacings = lengths[:, min(SPACING_NEIGHBOURS, disc)] / np.sqrt(SPACING_NEIGHBOURS / np.pi)
+    kept = np.minimum(here, there) < ALONG_NORMALS * lengths
+    kept &= lengths <= FARTHEST * np.minimum(spacings[:, None], spacings[neighbours])
+    kept[:, 0] = False
+    edges, edge_lengths = _edges(neighbours, kept, lengths)
+    return Network(
+        points, normals, np.pi * squares[:, disc] / disc, spacings, neighbours, kept, edges, edge_lengths
+    )  # fmt: skip
+
+
+def _edges(neighbours: Indices, kept: Mask, lengths: Numbers) -> tuple[Indices, Numbers]:
+    count = len(neighbours)
+    first, second = np.repeat(np.arange(count), kept.sum(axis=1)), neighbours[kept]
+    keys, once = np.unique(np.minimum(first, second) * np.int64(count) + np.maximum(first, second), return_index=True)
+    return np.stack([keys // count, keys % count], axis=1).astype(np.int32), lengths[kept][once]

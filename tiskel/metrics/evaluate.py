@@ -1,0 +1,176 @@
+"""Measure a skeleton."""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tiskel.arrays import Mask, Points
+from tiskel.geometry import graph
+from tiskel.geometry.curve import CurveSamples, curve_samples
+from tiskel.geometry.oriented import Surface, oriented_surface
+from tiskel.methods.trace import Stopwatch
+from tiskel.metrics import smoothness
+from tiskel.metrics.barcode import Barcode, barcode
+from tiskel.metrics.boundedness import Boundedness, boundedness
+from tiskel.metrics.centredness import curve_centredness, point_centredness
+from tiskel.metrics.loops import Loops, count_loops
+from tiskel.metrics.result import CurveQuality, PointQuality, Quality
+from tiskel.metrics.subject import Subject, make_subject
+from tiskel.metrics.topology import Topology, compare_topology
+from tiskel.params import MetricParams
+
+
+def evaluate(
+    cloud: npt.ArrayLike,
+    points: npt.ArrayLike | None = None,
+    nodes: npt.ArrayLike | None = None,
+    edges: npt.ArrayLike | None = None,
+    *,
+    origin: npt.ArrayLike | None = None,
+    params: MetricParams | None = None,
+) -> Quality:
+    """Measure skeletal points and a curve against the cloud they stand for.
+
+    The measures are those of the skeleton evaluation toolbox; where print and
+    toolbox differ, the toolbox, which made the published tables, is followed,
+    and :class:`tiskel.MetricParams` names the alternatives. Beyond it: a true
+    inside test, loops of surface, solid and curve, and reasons where there is
+    no value.
+
+    Parameters
+    ----------
+    cloud : (n, 3), in any unit; rows that are not finite are dropped, duplicates counted once.
+    points : (m, 3) skeletal (contracted) points, or None.
+    nodes, edges : (v, 3) and (e, 2) of the curve skeleton, or None.
+    origin : (m, 3), where the skeletal points came from. Without it they belong to the rows of the cloud where
+        there are as many, else to the nearest point of the cloud; the result says which.
+
+    Raises
+    ------
+    TiskelError
+        for a cloud without a body (few points, a line, a plane), numbers of rows that do not match, edges to nodes
+        that are not there.
+    """
+    params = params or MetricParams()
+    subject = make_subject(cloud, points, nodes, edges, origin, params.normalise)
+    watch = Stopwatch()
+    with watch.measure("inside"):
+        surface = oriented_surface(subject.cloud, subject.targets, params.seed)
+    topology, loops = _topology_and_loops(subject, surface, params, watch)
+    of_points, of_curve = _measures(subject, surface, params, watch)
+    return Quality(
+        topology=topology,
+        loops=loops,
+        points=of_points,
+        curve=of_curve,
+        graph=_graph_counts(subject),
+        cloud_points=len(subject.cloud),
+        correspondence=subject.correspondence,
+        oriented_by=surface.oriented_by,
+        orientation=surface.consistency,
+        unoriented="" if surface.trusted else f"the normals agree at {surface.consistency:.0%} of the points only",
+        params=params,
+        warnings=subject.warnings,
+        seconds=watch.seconds,
+    )
+
+
+def _topology_and_loops(
+    subject: Subject, surface: Surface, params: MetricParams, watch: Stopwatch
+) -> tuple[Topology | None, Loops]:
+    """Return both, from one barcode where the skeletal points stand for the whole cloud."""
+    with watch.measure("loops"):
+        part = _loop_part(subject, surface, params)
+        bars = barcode(part.points, loops=True)
+        loops = count_loops(bars.cycles, part, subject, params)
+    with watch.measure("topology"):
+        topology = _topology(subject, part.points, bars, params)
+    return topology, loops
+
+
+def _loop_part(subject: Subject, surface: Surface, params: MetricParams) -> Surface:
+    """Return the surface, or that of a random subset of a large cloud."""
+    if len(subject.cloud) <= params.loop_points:
+        return surface
+    rows = np.random.default_rng(params.seed).choice(len(subject.cloud), params.loop_points, replace=False)
+    rows.sort()
+    thinned = np.ascontiguousarray(subject.cloud[rows])
+    return oriented_surface(thinned, subject.targets[rows], params.seed)
+
+
+def _topology(subject: Subject, known: Points, bars: Barcode, params: MetricParams) -> Topology | None:
+    if len(subject.points) == 0:
+        return None
+    original = subject.cloud if subject.correspondence == "nearest" else subject.originals
+    before = bars if np.array_equal(original, known) else barcode(original)
+    return compare_topology(original, before.deaths, barcode(subject.points).deaths, params)
+
+
+def _measures(
+    subject: Subject, surface: Surface, params: MetricParams, watch: Stopwatch
+) -> tuple[PointQuality | None, CurveQuality | None]:
+    """Return the measures of points and of the curve; how places are surrounded is asked for all of them at once."""
+    samples = curve_samples(subject.nodes, subject.edges, params.curve_samples)
+    places = np.concatenate([subject.points, samples.points])
+    with watch.measure("boundedness"):
+        bounded = boundedness(places, subject.cloud)
+    with watch.measure("inside"):
+        inside = surface.contains(places) if surface.trusted else None
+    of_points, of_curve = slice(0, len(subject.points)), slice(len(subject.points), len(places))
+    surrounded = [(bounded.take(rows), None if inside is None else inside[rows]) for rows in (of_points, of_curve)]
+    return (
+        _point_quality(subject, surrounded[0], params, watch) if len(subject.points) else None,
+        _curve_quality(subject, samples, surrounded[1], params, watch) if len(subject.edges) else None,
+    )
+
+
+Surrounded = tuple[Boundedness, Mask | None]
+
+
+def _point_quality(subject: Subject, surrounded: Surrounded, params: MetricParams, watch: Stopwatch) -> PointQuality:
+    points, originals, frame = subject.points, subject.originals, subject.frame
+    bounded, inside = surrounded
+    with watch.measure("centredness"):
+        centred = point_centredness(points, originals)
+    with watch.measure("smoothness"):
+        smooth = smoothness.point_smoothness(points, params)
+    return PointQuality(
+        points=frame.undo(points),
+        originals=frame.undo(originals),
+        boundedness=bounded,
+        inside=inside,
+        centredness=np.where(bounded.bounded, centred, 0.0),
+        raw_centredness=centred,
+        smoothness=smooth,
+    )
+
+
+def _curve_quality(
+    subject: Subject, samples: CurveSamples, surrounded: Surrounded, params: MetricParams, watch: Stopwatch
+) -> CurveQuality:
+    nodes, edges, frame = subject.nodes, subject.edges, subject.frame
+    bounded, inside = surrounded
+    with watch.measure("centredness"):
+        sections = curve_centredness(samples, subject.cloud, params)
+    with watch.measure("smoothness"):
+        vertices, smooth = smoothness.vertex_smoothness(nodes, edges)
+        overall = smoothness.curve_smoothness(nodes, edges)
+    return CurveQuality(
+        nodes=frame.undo(nodes),
+        edges=edges,
+        samples=replace(samples, points=frame.undo(samples.points)),
+        boundedness=bounded,
+        inside=inside,
+        sections=sections,
+        centredness=np.where(bounded.bounded, sections.centredness, 0.0),
+        vertices=vertices,
+        smoothness=smooth,
+        overall_smoothness=overall,
+        hairpins=smoothness.hairpins(nodes, edges),
+    )
+
+
+def _graph_counts(subject: Subject) -> dict[str, float] | None:
+    """Return what the curve is made of; its length in the input's units."""
+    return graph.counts(subject.frame.undo(subject.nodes), subject.edges) if subject.curve_given else None

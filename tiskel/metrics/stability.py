@@ -1,0 +1,225 @@
+"""Is a contraction stable: do normals and curvatures change from step to step as they do where a curve comes out?
+
+On a curve the normal of a principal component analysis is any direction across
+it. Oriented by one rule, before and after, the angle between the two is then
+uniform between 0 and a right angle: D = angle / pi has mean 1/4, spread 0.144 and
+skewness 0. On a surface that has hardly moved D is near 0; where points have
+drifted along the shape it exceeds 1/2. The distance from that uniform
+distribution is what is judged, with the change of curvature, which grows where
+a clump or a thick tube is left.
+
+Departure from print: there the normals have no orientation, and mean 1/2 with
+skewness 0 is taken as a sign of stability. Random signs alone give that on every
+cloud, good or bad: the control beside each step shows it, and fails the test here.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from tiskel.arrays import Numbers, Points
+from tiskel.contraction import Contraction
+from tiskel.errors import TiskelError
+from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
+from tiskel.geometry.oriented import Surface, oriented_surface
+from tiskel.metrics.boundedness import outside_hull
+from tiskel.params import StabilityParams
+
+UNIFORM_UP_TO = 0.5  # of D on a curve: a right angle
+BEYOND = 0.12  # share of angles over a right one that is named as the reason
+SPAN = {"angle": (0.0, 1.0), "curvature": (-1 / 3, 1 / 3)}  # what values can be
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Mean, spread (standard deviation), skewness (0 where there is no spread), and number of peaks."""
+
+    mean: float
+    spread: float
+    skewness: float
+    peaks: int
+
+
+@dataclass(frozen=True)
+class StepStability:
+    """One step held against the original.
+
+    Attributes
+    ----------
+    angles : (m,) D_theta = arccos(n_k . n_0) / pi; curvatures : (m,) kappa_k - kappa_0.
+    angle, curvature : their distributions; control : that of the angles under random signs.
+    distance, control_distance : largest difference of the cumulative distributions of the angles, and of the
+        control, from the uniform one on [0, 1/2].
+    median_curvature : median of the curvatures.
+    in_hull : share of points in the convex hull of the step before.
+    in_cloud : share of points inside the original cloud; None where its normals cannot be oriented.
+    control_passes : whether random signs would be judged stable; if they were, this step would be no evidence.
+    stable, reason : the verdict.
+    """
+
+    angles: Numbers
+    curvatures: Numbers
+    angle: Distribution
+    curvature: Distribution
+    control: Distribution
+    distance: float
+    control_distance: float
+    median_curvature: float
+    in_hull: float
+    in_cloud: float | None
+    control_passes: bool
+    stable: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The steps of a contraction; its verdict is that of the last.
+
+    Attributes
+    ----------
+    steps : one per accepted step.
+    points : of the m points that survive all steps, how many there are.
+    """
+
+    steps: tuple[StepStability, ...]
+    points: int
+    params: StabilityParams
+
+    @property
+    def stable(self) -> bool:
+        return self.steps[-1].stable
+
+    @property
+    def reason(self) -> str:
+        return self.steps[-1].reason
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain JSON values, without the arrays."""
+        return {
+            "stable": self.stable,
+            "reason": self.reason,
+            "points": self.points,
+            "steps": [{"step": number, **_plain(step)} for number, step in enumerate(self.steps, 1)],
+            "settings": asdict(self.params),
+        }
+
+
+def _plain(step: StepStability) -> dict[str, Any]:
+    return {key: value for key, value in asdict(step).items() if key not in ("angles", "curvatures")}
+
+
+def assess_stability(contraction: Contraction, params: StabilityParams | None = None) -> Stability:
+    """Judge the steps of a contraction by how normals and curvatures change.
+
+    Only points that survive all steps count; their normals are those of each
+    other's neighbourhoods. Both normals of a point are oriented away from its
+    final position, as seen from where it came from. Raises TiskelError where
+    the contraction kept no step.
+    """
+    params = params or StabilityParams()
+    c = contraction
+    if len(c.history) == 0 or len(c.points) == 0:
+        raise TiskelError(f"the contraction kept {len(c.history)} steps; there is nothing to compare")
+    surface = oriented_surface(*_surface_arguments(c))
+    outward = c.origin - c.points
+    normals, curvature = oriented_normals(c.origin, outward, params.neighbours)
+    signs = np.random.default_rng(params.seed).integers(2, size=len(c.origin))
+    before, steps = c.origin, []
+    for positions in c.history:
+        turned, bent = oriented_normals(positions, outward, params.neighbours)
+        cosine = np.einsum("ij,ij->i", normals, turned)
+        angles = np.arccos(np.clip(cosine, -1, 1)) / np.pi
+        places = _containment(positions, before, surface)
+        steps.append(_judged(angles, bent - curvature, np.where(signs, angles, 1 - angles), places, params))
+        before = positions
+    return Stability(tuple(steps), len(c.origin), params)
+
+
+def _surface_arguments(c: Contraction) -> tuple[Points, Points]:
+    """Return the distinct points of the cloud and where each contracts to."""
+    distinct = c.merged_step != 0
+    return np.ascontiguousarray(c.cloud[distinct]), c.points[c.survivor_of()][distinct]
+
+
+def oriented_normals(points: Points, outward: Points, neighbours: int) -> tuple[Points, Numbers]:
+    """Return normals (m, 3) on the side of outward (m, 3), and curvatures (m,): smallest eigenvalue over their sum."""
+    points = np.ascontiguousarray(points)
+    near = nearest_neighbours(points, min(neighbours, len(points)))[0]
+    values, axes = principal_axes(points, near)
+    normals = axes[:, 2]
+    sign = np.where(np.einsum("ij,ij->i", normals, outward) < 0, -1.0, 1.0)
+    total = values.sum(axis=1)
+    return normals * sign[:, None], np.divide(values[:, 2], total, out=np.zeros(len(points)), where=total > 0)
+
+
+def _containment(points: Points, before: Points, surface: Surface) -> tuple[float, float | None]:
+    """Return the shares of points in the convex hull of the step before, and inside the original cloud."""
+    inside = float(surface.contains(points).mean()) if surface.trusted else None
+    return float((~outside_hull(points, before)).mean()), inside
+
+
+def _judged(
+    angles: Numbers, curvatures: Numbers, control: Numbers, places: tuple[float, float | None], params: StabilityParams
+) -> StepStability:
+    distance, median = distance_from_uniform(angles), float(np.median(curvatures))
+    stable, reason = verdict(distance, median, angles, params)
+    control_distance = distance_from_uniform(control)
+    return StepStability(
+        angles=angles,
+        curvatures=curvatures,
+        angle=distribution(angles, "angle", params),
+        curvature=distribution(curvatures, "curvature", params),
+        control=distribution(control, "angle", params),
+        distance=distance,
+        control_distance=control_distance,
+        median_curvature=median,
+        in_hull=places[0],
+        in_cloud=places[1],
+        control_passes=control_distance <= params.distance,
+        stable=stable,
+        reason=reason,
+    )
+
+
+def distance_from_uniform(angles: Numbers) -> float:
+    """Return the largest difference of the angles' cumulative distribution from the uniform one on [0, 1/2]."""
+    uniform = np.clip(np.sort(angles) / UNIFORM_UP_TO, 0, 1)
+    steps = np.arange(len(angles) + 1) / len(angles)
+    return float(max((steps[1:] - uniform).max(), (uniform - steps[:-1]).max()))
+
+
+def distribution(values: Numbers, kind: str, params: StabilityParams) -> Distribution:
+    """Return mean, spread, skewness and peaks of angles or of changes of curvature."""
+    mean, spread = float(values.mean()), float(values.std())
+    skewness = float(((values - mean) ** 3).mean() / spread**3) if spread > 0 else 0.0
+    return Distribution(mean, spread, skewness, peaks(values, SPAN[kind], params))
+
+
+def peaks(values: Numbers, span: tuple[float, float], params: StabilityParams) -> int:
+    """Return the number of peaks of a histogram that falls by the prominence on both sides of each."""
+    shares = np.histogram(values, params.bins, span)[0] / len(values)
+    return len(find_peaks(np.concatenate([[0], shares, [0]]), prominence=params.prominence)[0])
+
+
+def verdict(distance: float, median: float, angles: Numbers, params: StabilityParams) -> tuple[bool, str]:
+    """Return whether a step is stable, and why or why not."""
+    if distance > params.distance:
+        return False, f"{_why_not(angles)} (distance {distance:.3f}, at most {params.distance})"
+    if median > params.curvature:
+        return False, f"what is left is thick: curvature rose by {median:.3f} (median, at most {params.curvature})"
+    return (
+        True,
+        f"normals are spread evenly across a curve (distance {distance:.3f}), curvature changed by {median:.3f}",
+    )
+
+
+def _why_not(angles: Numbers) -> str:
+    over = float((angles > UNIFORM_UP_TO).mean())
+    if over > BEYOND:
+        return f"points drifted: {over:.0%} of the normals turned by more than a right angle"
+    if angles.mean() < UNIFORM_UP_TO / 2:
+        return f"normals have hardly turned, by {angles.mean():.2f} pi on average: it is still a surface"
+    return "normals are not spread evenly across a curve"

@@ -1,0 +1,131 @@
+"""What is measured: a cloud, skeletal points with their originals, a curve; checked, cleaned and normalised."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import (
+    Frame,
+    Indices,
+    Points,
+    as_points,
+    check_solid,
+    finite_rows,
+    first_of_duplicates,
+    normalisation,
+)
+from tiskel.errors import TiskelError
+from tiskel.geometry.curve import curve_samples
+from tiskel.params import Normalisation
+
+TARGET_SAMPLES = 1000  # places on a curve that a cloud may contract to
+NO_POINTS: Points = np.zeros((0, 3))
+
+
+@dataclass(frozen=True)
+class Subject:
+    """All in normalised coordinates.
+
+    Attributes
+    ----------
+    cloud : (n, 3), finite and distinct.
+    points, originals : (m, 3), skeletal points and the points of the cloud they stand for; no row where none are given.
+    correspondence : "given", "rows" (as many points as the cloud has, row by row) or "nearest".
+    nodes, edges : (v, 3) and (e, 2) of the curve; no row where none is given.
+    curve_given : whether one is, be it empty.
+    frame : how to get back to the input's units.
+    warnings : what was left out on the way in.
+    """
+
+    cloud: Points
+    points: Points
+    originals: Points
+    correspondence: str
+    nodes: Points
+    edges: Indices
+    curve_given: bool
+    frame: Frame
+    warnings: tuple[str, ...]
+
+    @cached_property
+    def targets(self) -> Points:
+        """(n, 3), the place that each point of the cloud contracts to, as far as that is known.
+
+        That of the nearest original; without skeletal points the nearest place
+        on the curve; without either the middle of the cloud.
+        """
+        if len(self.points):
+            return np.asarray(self.points[cKDTree(self.originals).query(self.cloud)[1]])
+        along = curve_samples(self.nodes, self.edges, TARGET_SAMPLES).points
+        places = np.concatenate([self.nodes, along]) if len(self.nodes) else self.cloud.mean(axis=0)[None]
+        return np.asarray(places[cKDTree(places).query(self.cloud)[1]])
+
+
+def make_subject(
+    cloud: npt.ArrayLike,
+    points: npt.ArrayLike | None,
+    nodes: npt.ArrayLike | None,
+    edges: npt.ArrayLike | None,
+    origin: npt.ArrayLike | None,
+    kind: Normalisation,
+) -> Subject:
+    """Check and clean what is to be measured; raise TiskelError where it makes no sense."""
+    given = as_points(cloud)
+    whole = given[finite_rows(given)]
+    distinct = np.ascontiguousarray(whole[np.unique(first_of_duplicates(whole))] if len(whole) else whole)
+    check_solid(distinct)
+    frame = normalisation(distinct, kind)
+    warnings = [f"{len(given) - len(whole)} rows of the cloud with NaN or Inf were dropped"] * (len(given) > len(whole))
+    skeletal, originals, correspondence = _points(points, origin, given, distinct, warnings)
+    vertices, links = _curve(nodes, edges, warnings)
+    return Subject(
+        cloud=frame.apply(distinct),
+        points=frame.apply(skeletal),
+        originals=frame.apply(originals),
+        correspondence=correspondence,
+        nodes=frame.apply(vertices),
+        edges=links,
+        curve_given=nodes is not None,
+        frame=frame,
+        warnings=tuple(warnings),
+    )
+
+
+def _points(
+    points: npt.ArrayLike | None, origin: npt.ArrayLike | None, given: Points, distinct: Points, warnings: list[str]
+) -> tuple[Points, Points, str]:
+    """Return skeletal points, their originals, and how these were found."""
+    if points is None:
+        return NO_POINTS, NO_POINTS, "none"
+    skeletal = as_points(points) if np.size(points) else NO_POINTS
+    originals, how = (as_points(origin), "given") if origin is not None else (given, "rows")
+    if origin is not None and len(originals) != len(skeletal):
+        raise TiskelError(f"origin must have a row for each of the {len(skeletal)} points, got {len(originals)}")
+    if len(originals) != len(skeletal):
+        originals, how = skeletal, "nearest"
+    finite = finite_rows(skeletal) & finite_rows(originals)
+    if not finite.all():
+        warnings.append(f"{(~finite).sum()} rows of the skeletal points with NaN or Inf were dropped")
+    skeletal, originals = skeletal[finite], originals[finite]
+    if how == "nearest":
+        originals = distinct[cKDTree(distinct).query(skeletal)[1]]
+    return skeletal, originals, how
+
+
+def _curve(nodes: npt.ArrayLike | None, edges: npt.ArrayLike | None, warnings: list[str]) -> tuple[Points, Indices]:
+    """Return nodes and edges, each edge once, lower node first, none from a node to itself."""
+    vertices = NO_POINTS if nodes is None or np.size(nodes) == 0 else as_points(nodes)
+    bad = np.flatnonzero(~finite_rows(vertices))
+    if len(bad):
+        raise TiskelError(f"node {bad[0]} of the curve is not finite: {vertices[bad[0]].tolist()}; repair the curve")
+    given = np.zeros((0, 2), np.int32) if edges is None else np.asarray(edges, np.int64).reshape(-1, 2)
+    if len(given) and (given.min() < 0 or given.max() >= len(vertices)):
+        raise TiskelError(f"an edge names node {given.max()}, the curve has {len(vertices)}; count nodes from 0")
+    links = np.unique(np.sort(given, axis=1), axis=0)
+    links = links[links[:, 0] != links[:, 1]].astype(np.int32)
+    if len(links) < len(given):
+        warnings.append(f"{len(given) - len(links)} edges of the curve were repeats or led nowhere and are left out")
+    return vertices, links

@@ -1,0 +1,43 @@
+"""Settings of every stage, with their defaults and where they come from.
+
+These dataclasses are the only place where a default is written down; the
+command line reads them from here, so nothing in this room needs NumPy. Values
+marked [T] are those of the published MATLAB toolboxes, which produced the
+published tables.
+"""
+
+from tiskel.params.contraction import (
+    MIN_POINTS,
+    SIDE,
+    ContractionParams,
+    Method,
+    Normalisation,
+    Solver,
+    published_neighbours,
+)
+from tiskel.params.metrics import Bars, MetricParams
+from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
+from tiskel.params.skeleton import SkeletonParams
+from tiskel.params.stability import StabilityParams
+from tiskel.params.surface import OrderRule, SurfaceParams
+
+__all__ = [
+    "MIN_POINTS",
+    "SIDE",
+    "Bars",
+    "ContractionParams",
+    "Method",
+    "MetricParams",
+    "Model",
+    "Normalisation",
+    "Normals",
+    "OrderRule",
+    "RollParams",
+    "Side",
+    "SkeletonParams",
+    "Solver",
+    "StabilityParams",
+    "SurfaceParams",
+    "Twist",
+    "published_neighbours",
+]

@@ -1,0 +1,63 @@
+"""Settings of rolling."""
+
+from dataclasses import dataclass
+from math import inf, pi
+from typing import Literal, get_args
+
+from tiskel.errors import TiskelError
+from tiskel.params.checks import among, at_least, finite
+
+Model = Literal["global", "local"]
+Side = Literal["outside", "inside"]
+Twist = Literal["object", "sphere", "world"]
+Normals = Literal["surface", "pca"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RollParams:
+    """Settings of :func:`tiskel.roll`; lengths in the input's unit, angles in radians, times in seconds.
+
+    omega and velocity are those of the object relative to the sphere in the
+    axes of the contact frame (twist "object"), of the sphere relative to the
+    object in the axes of the sphere's own frame at the contact ("sphere"), or
+    of the sphere in the axes of the cloud ("world"); velocities are those of
+    the material at the contact and have no part along the normal.
+    """
+
+    model: Model = "global"
+    side: Side = "outside"
+    radius: float | None = None  #: of the sphere; None: a quarter of the median radius of the surface
+    omega: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: slip
+    twist: Twist = "object"
+    duration: float | None = None  #: None: 10, or as long as the inputs last
+    rate: float = 100.0  #: rows of the trajectory per second
+    start: tuple[float, float, float, float, float] = (0.1, pi / 2, 0.1, 0.1, pi / 2)  #: u_o, v_o, u_s, v_s, psi [T]
+    start_at: tuple[float, float, float] | None = (
+        None  #: instead of u_o and v_o, the point of the surface nearest to it
+    )
+    normals: Normals = "surface"  #: where curvature comes from; "pca": normals of neighbours, as printed, to compare
+    neighbours: int = 20  #: of these normals [T]
+    meet: bool = True  #: the run ends where the sphere meets another part of the cloud
+    rtol: float = 1e-3  #: of the solver [T]
+    atol: float = 1e-5  #: [T]
+
+    def __post_init__(self) -> None:
+        among("model", self.model, get_args(Model))
+        among("side", self.side, get_args(Side))
+        among("twist", self.twist, get_args(Twist))
+        among("normals", self.normals, get_args(Normals))
+        at_least("neighbours", self.neighbours, 6)
+        for name, count in (("omega", 3), ("velocity", 3), ("start", 5), ("start_at", 3)):
+            finite(name, getattr(self, name), count)
+        for name in ("radius", "duration", "rate", "rtol", "atol"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < inf:
+                raise TiskelError(f"{name} must be a positive number, got {value}")
+        if self.twist != "world" and self.velocity[2] != 0:
+            raise TiskelError(f"velocity along the normal must be 0, contact is kept; got {self.velocity[2]}")
+
+    @property
+    def sigma(self) -> float:
+        """1 outside, -1 inside."""
+        return 1.0 if self.side == "outside" else -1.0

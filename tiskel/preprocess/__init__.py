@@ -1,0 +1,1 @@
+"""What can be done to a cloud before the first stage."""

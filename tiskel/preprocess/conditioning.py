@@ -1,0 +1,122 @@
+"""What can be done to a cloud before the first stage; each off by default, each reported."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from tiskel.arrays import Mask, Points, as_points, diagonal, finite_rows
+from tiskel.errors import TiskelError
+from tiskel.geometry.neighbours import nearest_neighbours
+from tiskel.preprocess.capping import cap_points
+
+NoiseKind = Literal["coordinates", "diagonal"]
+
+OUTLIER_NEIGHBOURS = 17  # the point included; sixteen others, a common choice of statistical removal
+OUTLIER_DEVIATIONS = 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConditioningParams:
+    """Settings of :func:`condition`; lengths in the input's units."""
+
+    crop: tuple[float, ...] | None = None  #: xmin, ymin, zmin, xmax, ymax, zmax
+    outliers: bool = False  #: remove points whose mean neighbour distance is 2 deviations above the mean
+    voxel: float | None = None  #: side of the cubes whose points become their mean
+    sample: int | None = None  #: points of a random subset
+    cap: bool = False  #: close open tube ends with flat discs of points
+    noise: float = 0.0  #: standard deviation of Gaussian noise, as a share
+    noise_kind: NoiseKind = "coordinates"  #: of what the share is: see :func:`with_noise`
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.crop is not None:
+            low, high = np.array(self.crop[:3]), np.array(self.crop[3:])
+            if len(self.crop) != 6 or not (low < high).all():
+                raise TiskelError(
+                    f"crop must be xmin,ymin,zmin,xmax,ymax,zmax with each min below its max, got {self.crop}"
+                )
+        if self.voxel is not None and not (self.voxel > 0 and np.isfinite(self.voxel)):
+            raise TiskelError(f"voxel must be a positive length in the cloud's units, got {self.voxel}")
+        if not (self.noise >= 0 and np.isfinite(self.noise)):
+            raise TiskelError(f"noise must be a share, 0 or more, got {self.noise}")
+        if self.noise_kind not in get_args(NoiseKind):
+            kinds = ", ".join(get_args(NoiseKind))
+            raise TiskelError(f"the kind of noise must be one of {kinds}, got {self.noise_kind!r}")
+        if self.sample is not None and self.sample < 1:
+            raise TiskelError(f"sample must be a positive number of points, got {self.sample}")
+
+
+def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple[str, ...]]:
+    """Crop, remove outliers, thin, cap and blur a cloud, in this order; return it with a line per thing done.
+
+    Rows that are not finite are left for the next stage to count, unless
+    something is asked for, which drops them here.
+    """
+    report: list[str] = []
+    if params == ConditioningParams(seed=params.seed):
+        return points, ()
+    every = as_points(points)
+    points = every[finite_rows(every)]
+    _say(report, every, points, "dropped {} rows with NaN or Inf")
+    if params.crop is not None:
+        before, points = points, points[_inside(points, params.crop)]
+        _say(report, before, points, "cropped away {} points")
+    if params.outliers:
+        before, points = points, points[_inliers(points)]
+        _say(report, before, points, "removed {} outliers")
+    if params.voxel is not None:
+        before, points = points, voxel_means(points, params.voxel)
+        _say(report, before, points, "voxels took away {} points")
+    if params.sample is not None and params.sample < len(points):
+        generator = np.random.default_rng(params.seed)
+        before, points = points, points[np.sort(generator.choice(len(points), params.sample, replace=False))]
+        _say(report, before, points, "sampling took away {} points")
+    if params.cap and len(points):
+        added = cap_points(points)
+        points = np.concatenate([points, added])
+        report.append(f"capped open ends with {len(added)} points")
+    if params.noise > 0 and len(points):
+        points = with_noise(points, params.noise, params.noise_kind, params.seed)
+        report.append(f"added noise of {params.noise:.3g} of the {params.noise_kind}")
+    if len(points) == 0:
+        raise TiskelError(f"no point of {len(every)} is left after {'; '.join(report)}; loosen the options")
+    return np.ascontiguousarray(points), tuple(report)
+
+
+def _say(report: list[str], before: Points, after: Points, line: str) -> None:
+    if len(after) < len(before):
+        report.append(line.format(len(before) - len(after)))
+
+
+def _inside(points: Points, box: tuple[float, ...]) -> Mask:
+    return np.asarray(((points >= box[:3]) & (points <= box[3:])).all(axis=1))
+
+
+def _inliers(points: Points) -> Mask:
+    """Statistical outlier removal (Rusu et al. 2008)."""
+    if len(points) <= OUTLIER_NEIGHBOURS:
+        return np.ones(len(points), bool)
+    mean = np.sqrt(nearest_neighbours(points, OUTLIER_NEIGHBOURS)[1]).sum(axis=1) / (OUTLIER_NEIGHBOURS - 1)
+    return np.asarray(mean <= mean.mean() + OUTLIER_DEVIATIONS * mean.std())
+
+
+def with_noise(points: Points, share: float, kind: NoiseKind = "coordinates", seed: int = 0) -> Points:
+    """Return points (n, 3) with Gaussian noise, as the published experiments have it.
+
+    "coordinates": the standard deviation is a share of each coordinate, taken
+    from the middle of the bounding box (the evaluation toolbox multiplies raw
+    coordinates, which depends on the origin). "diagonal": it is a share of half
+    the diagonal, the same everywhere, as in the chapter on contraction.
+    """
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    scale = points - middle if kind == "coordinates" else diagonal(points) / 2
+    return np.asarray(points + np.random.default_rng(seed).normal(size=points.shape) * share * scale)
+
+
+def voxel_means(points: Points, side: float) -> Points:
+    """Return the mean of the points in every occupied cube of a grid, in the order of the cubes."""
+    cells = np.floor((points - points.min(axis=0)) / side)
+    _, inverse, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    sums = [np.bincount(inverse.ravel(), points[:, axis], minlength=len(counts)) for axis in range(3)]
+    return np.stack(sums, axis=1) / counts[:, None]
