@@ -132,7 +132,7 @@ def scored(name: str, cloud: np.ndarray, shape: ConeGraph | None, setting: str, 
     row |= {name: quality[name]["curve"] for name in QUALITIES}
     row |= {"found_components": s.components, "found_loops": s.loops, "found_ends": s.ends}
     if shape is not None:
-        found = agreement(s.nodes, s.edges, shape)
+        found = agreement(s, shape)
         row |= {**found.as_dict(), "right": int(found.topology_right)}
     return row | {"seconds": round(seconds, 2), "warnings": "; ".join(s.warnings)}
 

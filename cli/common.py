@@ -5,7 +5,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tiskel.cli import options, surface_options
+from tiskel.cli import method_options, options, surface_options
 from tiskel.cli.console import begin
 
 Command = Callable[..., None]
@@ -55,6 +55,24 @@ def reads_cloud(command: Command) -> Command:
         command(**arguments, conditioning=conditioning)
 
     return _with_options(command, run, INPUT, drop=("conditioning",))
+
+
+def contracts(command: Command) -> Command:
+    """Add the settings of a contraction and hand those that were given to the command as a mapping, contracting."""
+    return _with_settings(command, method_options.CONTRACTING, "contracting")
+
+
+def curves(command: Command) -> Command:
+    """Add the settings of a curve and hand those that were given to the command as a mapping, curving."""
+    return _with_settings(command, method_options.CURVING, "curving")
+
+
+def _with_settings(command: Command, settings: Mapping[str, tuple[Any, Any]], name: str) -> Command:
+    def run(**arguments: Any) -> None:
+        given = {key: value for key in settings if (value := arguments.pop(key)) is not None}
+        command(**arguments, **{name: given})
+
+    return _with_options(command, run, settings, drop=(name,))
 
 
 def rolls(command: Command) -> Command:

@@ -11,7 +11,7 @@ from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
 from tiskel.errors import TiskelError
-from tiskel.params import MetricParams
+from tiskel.params import MetricParams, Normalisation
 
 if TYPE_CHECKING:
     from tiskel.arrays import Points
@@ -61,6 +61,9 @@ BarRule = Annotated[
         rich_help_panel="Method",
     ),
 ]
+NormaliseName = Annotated[
+    Normalisation, typer.Option("--normalise", help="What is scaled to 1.6 inside.", rich_help_panel="Method")
+]
 NoDiagonal = Annotated[
     bool, typer.Option("--no-diagonal", help="Match bars with bars only, as in print.", rich_help_panel="Method")
 ]
@@ -86,7 +89,7 @@ def metrics(
     curve: CurveFile = None,
     bars: BarRule = METRICS.bars,
     no_diagonal: NoDiagonal = not METRICS.diagonal,
-    normalise: o.Normalise = METRICS.normalise,
+    normalise: NormaliseName = METRICS.normalise,
     seed: MetricSeed = METRICS.seed,
     as_json: o.AsJson = False,
     as_csv: AsCsv = False,

@@ -5,10 +5,9 @@ from typing import Annotated
 
 import typer
 
-from tiskel.params import ContractionParams, SkeletonParams
+from tiskel.params import Method, RobustParams
 
-CONTRACTION = ContractionParams()
-SKELETON = SkeletonParams()
+METHOD: Method = RobustParams().method
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="A file, or - for standard input.", show_default=False)]
 Output = Annotated[
@@ -96,43 +95,20 @@ Plot = Annotated[
     ),
 ]
 
-Method = Annotated[
-    str,
+MethodName = Annotated[
+    Method,
     typer.Option(
-        metavar="robust|gls|lbc",
+        "--method",
         help="By fronts over the cloud; GLSkeleton (Wen et al. 2024); Laplacian-based contraction (Cao et al. 2010).",
         rich_help_panel="Method",
     ),
 ]
-Neighbours = Annotated[
-    int | None,
+History = Annotated[
+    bool,
     typer.Option(
-        metavar="K",
-        help="Nearest neighbours, the point included. [default: 14 for robust, else 0.012 n within 8 and 30]",
-        show_default=False,
-        rich_help_panel="Method",
-    ),
-]
-MaxSteps = Annotated[
-    int | None,
-    typer.Option(
-        metavar="N",
-        help="Step limit. [default: 3 for robust, 10 for gls, 20 for lbc]",
-        show_default=False,
-        rich_help_panel="Method",
-    ),
-]
-Normalise = Annotated[
-    str, typer.Option(metavar="side|diagonal", help="What is scaled to 1.6 inside.", rich_help_panel="Method")
-]
-SolverName = Annotated[
-    str | None,
-    typer.Option(
-        "--solver",
-        metavar="scipy|cholmod",
-        help="Sparse solver. [default: TISKEL_SOLVER, else scipy]",
-        show_default=False,
-        rich_help_panel="Method",
+        "--history",
+        help="Also the positions after every step, which `tiskel stability` needs.",
+        rich_help_panel="Output",
     ),
 ]
 Weights = Annotated[
@@ -142,14 +118,5 @@ Weights = Annotated[
         help="Property of the PLY whose values W_L is multiplied by, point by point; for gls and lbc.",
         show_default=False,
         rich_help_panel="Method",
-    ),
-]
-Raw = Annotated[
-    bool, typer.Option("--raw", help="The curve exactly as published: spurs stay.", rich_help_panel="Method")
-]
-Radius = Annotated[
-    float,
-    typer.Option(
-        metavar="SHARE", help="Radius of the sampling balls, as a share of the diagonal.", rich_help_panel="Method"
     ),
 ]

@@ -25,7 +25,7 @@ def report(
         "components": s.components,
         "loops": s.loops,
         "ends": s.ends,
-        "joints": s.joints,
+        "joints": s.junctions,
         "length": f"{s.length:.6g}",
     }
     head = ("step", "contraction weight", "ring ratio", "explained score", "points")

@@ -13,7 +13,7 @@ import typer
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
-from tiskel.cli.common import common, reads_cloud, rolls
+from tiskel.cli.common import common, contracts, curves, reads_cloud, rolls
 from tiskel.cli.report import report
 from tiskel.cli.run_surface import Rolled, settings_of, sliced_and_rolled
 from tiskel.errors import TiskelError
@@ -34,29 +34,29 @@ Folder = Annotated[
 
 @common
 @reads_cloud
+@contracts
+@curves
 @rolls
 def run(
     source: o.Source,
     output: Folder,
-    method: o.Method = o.CONTRACTION.method,
-    neighbours: o.Neighbours = o.CONTRACTION.neighbours,
-    max_steps: o.MaxSteps = o.CONTRACTION.max_steps,
-    normalise: o.Normalise = o.CONTRACTION.normalise,
+    method: o.MethodName = o.METHOD,
     weights: o.Weights = None,
-    solver: o.SolverName = None,
-    raw: o.Raw = o.SKELETON.raw,
-    radius: o.Radius = o.SKELETON.radius,
+    history: o.History = False,
     branch: so.Branch = so.SURFACE.branch,
     *,
     conditioning: Mapping[str, Any],
+    contracting: Mapping[str, Any],
+    curving: Mapping[str, Any],
     rolling: Mapping[str, Any],
 ) -> None:
     """Do everything in one go: stage files, exports, measures, surfaces, a roll, pictures and a report in one folder.
 
     `tiskel run scan.ply -o out/`
     """
-    params = stages.contraction_params(method, neighbours, max_steps, normalise, solver)
-    skeleton_params = SkeletonParams(raw=raw, radius=radius)
+    params = stages.contraction_params(method, contracting)
+    skeleton_params = SkeletonParams(**curving)
+    skeleton_params.over(params)  # wrong settings are told before the work begins
     surface_params = SurfaceParams(branch=branch)
     settings_of(rolling)  # wrong options are told before the work begins
     _make_folder(output)
@@ -68,11 +68,11 @@ def run(
     stages.tell_contraction(c)
     s = _timed(seconds, "skeleton", lambda: extract_skeleton(c, skeleton_params))
     stages.tell_skeleton(s)
-    quality = _timed(seconds, "metrics", lambda: evaluate(s.cloud, s.contracted, s.nodes, s.edges, origin=s.origin))
+    quality = _timed(seconds, "metrics", lambda: evaluate(s))
     stability = _timed(seconds, "stability", lambda: assess_stability(c))
     console.say(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}")
     rolled = _timed(seconds, "surface", lambda: sliced_and_rolled(s, surface_params, rolling))
-    made = Made(cloud, c, s, skeleton_params, quality, stability, rolled)
+    made = Made(cloud, c, s, quality, stability, rolled, history)
     drawn = _timed(seconds, "pictures", made.pictures)
     files: dict[str, Callable[[], bytes]] = {}
     files |= {**made.stage_files(), **made.documents(), **{name: partial(bytes, data) for name, data in drawn.items()}}
@@ -91,10 +91,10 @@ class Made:
     cloud: "Cloud"
     contraction: "Contraction"
     skeleton: "Skeleton"
-    skeleton_params: SkeletonParams
     quality: "Quality"
     stability: "Stability"
     rolled: Rolled
+    history: bool
 
     def stage_files(self) -> dict[str, Callable[[], bytes]]:
         from tiskel.io.exports import to_json, to_obj, to_swc
@@ -104,8 +104,8 @@ class Made:
 
         source = self.cloud.source
         return {
-            "contraction.ply": lambda: dump_contraction(self.contraction, source),
-            "skeleton.ply": lambda: dump_skeleton(self.skeleton, self.skeleton_params, source),
+            "contraction.ply": lambda: dump_contraction(self.contraction, source, history=self.history),
+            "skeleton.ply": lambda: dump_skeleton(self.skeleton, source),
             "skeleton.obj": lambda: to_obj(self.skeleton),
             "skeleton.swc": lambda: to_swc(self.skeleton),
             "skeleton.json": lambda: to_json(self.skeleton),

@@ -1,12 +1,13 @@
 """``tiskel skeleton``."""
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 import typer
 
 from tiskel.cli import options as o
 from tiskel.cli import stages
-from tiskel.cli.common import common
+from tiskel.cli.common import common, curves
 from tiskel.errors import TiskelError
 from tiskel.params import SkeletonParams
 
@@ -25,12 +26,13 @@ Format = Annotated[
 
 
 @common
+@curves
 def skeleton(
     source: o.Source,
     output: o.Output = None,
     format_name: Format = None,
-    raw: o.Raw = o.SKELETON.raw,
-    radius: o.Radius = o.SKELETON.radius,
+    *,
+    curving: Mapping[str, Any],
 ) -> None:
     """Turn a contracted cloud into a curve skeleton.
 
@@ -38,7 +40,7 @@ def skeleton(
     MeshLab show lines from OBJ: `tiskel contract scan.ply | tiskel skeleton - -o curve.obj`
     """
     chosen = format_of(format_name, str(output or ""))
-    params = SkeletonParams(raw=raw, radius=radius)
+    params = SkeletonParams(**curving)
     from tiskel import extract_skeleton
     from tiskel.io.exports import EXPORTS
     from tiskel.io.ply import source_of
@@ -51,7 +53,7 @@ def skeleton(
     stages.tell_skeleton(made)
     target = stages.output_path(output, source, f"skeleton.{chosen}")
     if chosen == "ply":
-        stages.write(target, lambda: dump_skeleton(made, params, source_of(data, "contraction", str(source))))
+        stages.write(target, lambda: dump_skeleton(made, source_of(data, "contraction", str(source))))
     else:
         stages.write(target, lambda: EXPORTS[chosen](made))
 

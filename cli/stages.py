@@ -4,13 +4,13 @@ import math
 import os
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tiskel.cli import console
 from tiskel.errors import TiskelError
-from tiskel.params import ContractionParams
+from tiskel.params import ContractionParams, params_class, settings_of
 
 if TYPE_CHECKING:
     from tiskel.arrays import Numbers, Points
@@ -66,14 +66,11 @@ def weights_of(cloud: "Cloud", points: "Points", name: str | None) -> "Numbers |
     return cloud.properties[name]
 
 
-def contraction_params(
-    method: str, neighbours: int | None, max_steps: int | None, normalise: str, solver: str | None
-) -> ContractionParams:
-    """Return the settings, with the solver from the environment where none is named."""
-    chosen = solver or os.environ.get("TISKEL_SOLVER") or ContractionParams().solver
-    return ContractionParams(
-        method=method, neighbours=neighbours, max_steps=max_steps, normalise=normalise, solver=chosen,  # type: ignore[arg-type]
-    )  # fmt: skip
+def contraction_params(method: str, given: Mapping[str, Any]) -> ContractionParams:
+    """Return the settings of a method, with the solver from the environment where it has one and none is named."""
+    solver = os.environ.get("TISKEL_SOLVER")
+    usual = {"solver": solver} if solver and "solver" in settings_of(params_class(method)) else {}
+    return ContractionParams(method=method, **{**usual, **given})
 
 
 def tell_contraction(c: "Contraction") -> None:
@@ -111,7 +108,7 @@ def tell_skeleton(s: "Skeleton") -> None:
     console.warn(s.warnings)
     console.say(
         f"{len(s.nodes)} nodes, {len(s.edges)} edges: components {s.components}, loops {s.loops}, ends {s.ends}, "
-        f"joints {s.joints}, branches {len(s.branches)}, length {s.length:.6g}"
+        f"joints {s.junctions}, branches {len(s.branches)}, length {s.length:.6g}"
     )
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tiskel.gallery.make import ShapeParams as ShapeParams
     from tiskel.gallery.make import make_shape as make_shape
     from tiskel.gallery.make import shape_graph as shape_graph
+    from tiskel.geometry.graph import CurveGraph as CurveGraph
     from tiskel.io.clouds import Cloud as Cloud
     from tiskel.io.clouds import load_cloud as load_cloud
     from tiskel.io.curves import Curve as Curve
@@ -37,7 +38,10 @@ if TYPE_CHECKING:
     from tiskel.metrics.stability import Stability as Stability
     from tiskel.metrics.stability import assess_stability as assess_stability
     from tiskel.params import ContractionParams as ContractionParams
+    from tiskel.params import GlsParams as GlsParams
+    from tiskel.params import LbcParams as LbcParams
     from tiskel.params import MetricParams as MetricParams
+    from tiskel.params import RobustParams as RobustParams
     from tiskel.params import RollParams as RollParams
     from tiskel.params import SkeletonParams as SkeletonParams
     from tiskel.params import StabilityParams as StabilityParams
@@ -62,11 +66,15 @@ _HOME = {
     "ConditioningParams": "preprocess.conditioning",
     "Contraction": "contraction",
     "ContractionParams": "params",
+    "CurveGraph": "geometry.graph",
     "Curve": "io.curves",
     "FittedSurface": "slicing.fitted",
+    "GlsParams": "params",
     "Inputs": "rolling.inputs",
+    "LbcParams": "params",
     "MetricParams": "params",
     "Quality": "metrics.result",
+    "RobustParams": "params",
     "RollParams": "params",
     "RollStatus": "rolling.trajectory",
     "ShapeParams": "gallery.make",

@@ -1,6 +1,7 @@
 """The stage ``contract``: a cloud in, a contracted cloud out, with the record of how."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,47 +16,65 @@ from tiskel.arrays import (
     finite_rows,
     first_of_duplicates,
     normalisation,
-    resolved,
 )
 from tiskel.errors import TiskelError
 from tiskel.geometry.rings import Rings
-from tiskel.methods.laplacian.gls import contract_gls
-from tiskel.methods.laplacian.lbc import contract_lbc
-from tiskel.methods.robust.fronts import contract_robust
-from tiskel.methods.trace import Status, StepRecord, Trace
-from tiskel.params import ContractionParams
-
-LOOPS = {"robust": contract_robust, "gls": contract_gls, "lbc": contract_lbc}
+from tiskel.methods import METHODS
+from tiskel.methods.trace import Sections, Status, StepRecord, Trace, survivors
+from tiskel.params import ContractionParams, RobustParams
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Contraction:
     """A contracted cloud and where it came from; coordinates in the input's units.
 
     Attributes
     ----------
-    points : (m, 3), the points that are left, contracted.
-    origin : (m, 3), where they were.
-    rows : (m,) int32, their rows in the cloud.
-    rings : the ring of each, by place in ``points``; merged rings for gls.
-    cloud : (n, 3), the finite points of the input.
-    input_rows : (n,) int32, their rows in the input.
-    merged_into : (n,) int32, row of the cloud that each removed point was merged into, -1 for the others.
-    merged_step : (n,) int32, the step of that, from 1; 0 for a duplicate; -1 for points that are left.
-    history : (k, m, 3), positions of the points that are left, after each step.
-    steps : one record per accepted step.
-    status : why the contraction stopped.
-    warnings : what a user should know about the input or the result.
-    params : the settings.
-    sections : (m,) int32, by robust: the section each point belongs to, a connected piece of what the last front
-        passed in one stride, -1 for debris; levels : (m,) int32, the number of the stride. None by the others.
-    ring_seconds : wall time of neighbours and rings.
+    points : (m, 3) float64
+        The points that are left, contracted.
+    origin : (m, 3) float64
+        Where they were.
+    rows : (m,) int32
+        Their rows in the cloud.
+    cloud : (n, 3) float64
+        The finite points of the input.
+    input_rows : (n,) int32
+        Their rows in the input.
+    merged_into : (n,) int32
+        Row of the cloud that each removed point was merged into, -1 for the others.
+    merged_step : (n,) int32
+        The step of that, from 1; 0 for a duplicate; -1 for points that are left.
+    history : (k, m, 3) float64
+        Positions of the points that are left, after each step; none (k = 0) where a file was written without.
+    steps : tuple of StepRecord
+        One record per accepted step.
+    status : Status
+        Why the contraction stopped.
+    warnings : tuple of str
+        What a user should know about the input or the result.
+    params : RobustParams, LbcParams or GlsParams
+        The settings.
+    rings : Rings or None
+        The ring of each point, by place in ``points``, merged rings for gls; None by robust, which has none.
+    sections : Sections or None
+        By robust: the section that each point belongs to, a connected piece of what the last front passed in one bin
+        of distance, and the number of the bin. None by the others.
+    prepared : object
+        What the method worked out about the cloud, so that the curve need not do it again; not in files.
+    ring_seconds : float
+        Wall time of neighbours and rings.
+
+    Examples
+    --------
+    >>> from tiskel import LbcParams, contract, make_shape, shape_graph
+    >>> c = contract(make_shape(shape_graph("capsule"))[0], LbcParams(max_steps=2))
+    >>> len(c.steps), c.status.value, c.points.shape == c.origin.shape
+    (2, 'step limit', True)
     """
 
     points: Points
     origin: Points
     rows: Indices
-    rings: Rings
     cloud: Points
     input_rows: Indices
     merged_into: Indices
@@ -65,16 +84,30 @@ class Contraction:
     status: Status
     warnings: tuple[str, ...]
     params: ContractionParams
-    sections: Indices | None = None
-    levels: Indices | None = None
+    rings: Rings | None = None
+    sections: Sections | None = None
+    prepared: Any = field(default=None, repr=False)
     ring_seconds: float = 0.0
 
     def survivor_of(self) -> Indices:
         """Return (n,), for each point of the cloud the place in ``points`` of the one it ended up in."""
-        place = np.full(len(self.cloud), -1, np.int32)
-        place[self.rows] = np.arange(len(self.rows), dtype=np.int32)
-        into = np.where(self.merged_into < 0, np.arange(len(self.cloud), dtype=np.int32), self.merged_into)
-        return place[resolved(into)]
+        return survivors(self.rows, self.merged_into)
+
+    def as_trace(self, frame: Frame) -> Trace:
+        """Return what the method's curve needs, in normalised coordinates; the history is left out."""
+        return Trace(
+            cloud=frame.apply(self.cloud),
+            points=frame.apply(self.points),
+            rows=self.rows,
+            merged_into=self.merged_into,
+            merged_step=self.merged_step,
+            history=(),
+            steps=self.steps,
+            status=self.status,
+            rings=self.rings,
+            sections=self.sections,
+            prepared=self.prepared,
+        )
 
 
 def contract(
@@ -105,8 +138,17 @@ def contract(
     TiskelError
         Fewer than ten distinct finite points, all points on a plane or a line,
         weights that do not fit, or a first step that has no solution.
+
+    Examples
+    --------
+    >>> from tiskel import GlsParams, contract, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("capsule"))
+    >>> contract(cloud).params.method
+    'robust'
+    >>> len(contract(cloud, GlsParams(max_steps=2)).points) < len(cloud)
+    True
     """
-    params = params or ContractionParams()
+    params = params or RobustParams()
     every = as_points(points)
     finite = finite_rows(every)
     cloud, input_rows = np.ascontiguousarray(every[finite]), np.flatnonzero(finite).astype(np.int32)
@@ -117,7 +159,7 @@ def contract(
     check_solid(cloud[distinct])
     frame = normalisation(cloud[distinct], params.normalise)
     chosen = None if weights is None else _weights(weights, len(every))[finite][distinct]
-    trace = LOOPS[params.method](frame.apply(cloud[distinct]), params, chosen)
+    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params, chosen)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
     warnings = _warnings(len(every) - len(cloud), len(cloud) - len(distinct), trace.status)
@@ -158,7 +200,6 @@ def _assembled(
         points=frame.undo(trace.points),
         origin=cloud[rows],
         rows=rows,
-        rings=trace.rings,
         cloud=cloud,
         input_rows=input_rows,
         merged_into=merged_into,
@@ -168,7 +209,8 @@ def _assembled(
         status=trace.status,
         warnings=warnings,
         params=params,
+        rings=trace.rings,
         sections=trace.sections,
-        levels=trace.levels,
+        prepared=trace.prepared,
         ring_seconds=trace.ring_seconds,
     )

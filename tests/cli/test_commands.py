@@ -8,7 +8,7 @@ import pytest
 from plyfile import PlyData, PlyElement
 
 from reference.fixtures import Runner, one_error_line
-from tiskel import load_cloud, read_contraction, read_skeleton
+from tiskel import LbcParams, load_cloud, read_contraction, read_skeleton
 from tiskel.gallery.catalogue import SHAPES
 
 
@@ -71,6 +71,7 @@ def test_contract_options_reach_the_library(tiskel: Runner, cloud: Path, tmp_pat
     words = ("--method", "lbc", "--neighbours", 12, "--max-steps", 2, "--normalise", "diagonal", "--solver", "scipy")
     done = tiskel("contract", cloud.name, *words, "--sample", 500, "--verbose", "-o", "c.ply")
     c = read_contraction(tmp_path / "c.ply")
+    assert isinstance(c.params, LbcParams)
     assert (c.params.neighbours, c.params.max_steps, c.params.normalise) == (12, 2, "diagonal")
     assert len(c.cloud) == 500
     assert b"sampling took away 400 points" in done.stderr

@@ -19,7 +19,7 @@ TOPOLOGY = {
 
 
 def cone(a: list[float], b: list[float], ra: float, rb: float) -> ConeGraph:
-    return ConeGraph(np.array([a, b], float), np.array([ra, rb]), np.array([[0, 1]], np.int32))
+    return ConeGraph(np.array([a, b], float), np.array([[0, 1]], np.int32), np.array([ra, rb]))
 
 
 @pytest.mark.parametrize("name", sorted(SHAPES))

@@ -7,8 +7,8 @@ from scipy.spatial import cKDTree
 from tiskel import MetricParams, ShapeParams, evaluate, make_shape, shape_graph
 from tiskel.arrays import Points
 from tiskel.geometry.curve import curve_samples
-from tiskel.geometry.oriented import Surface, oriented_surface, propagated_signs, ring_areas
-from tiskel.geometry.solid import betti_numbers, solid_loops
+from tiskel.geometry.oriented import OrientedCloud, oriented_cloud, propagated_signs, ring_areas
+from tiskel.geometry.solid import betti_numbers, solid_handles
 from tiskel.metrics.barcode import barcode
 from tiskel.metrics.loops import count_loops
 from tiskel.metrics.subject import make_subject
@@ -19,13 +19,13 @@ GENERATOR = np.random.default_rng(6)
 def shape(name: str, count: int = 3000, **degraded: float) -> tuple[Points, Points]:
     """Return a cloud, and the nearest place on its true skeleton for each point."""
     made, skeleton = make_shape(shape_graph(name), ShapeParams(count=count, **degraded))  # type: ignore[arg-type]
-    places = curve_samples(skeleton.nodes, skeleton.edges, 400).points
+    places = curve_samples(skeleton, 400).points
     return made, places[cKDTree(places).query(made)[1]]
 
 
 def test_areas_add_up_to_the_surface() -> None:
     """A capsule of radius 0.2 and length 1.4 has 2 pi r l + 4 pi r^2."""
-    surface = oriented_surface(*shape("capsule"))
+    surface = oriented_cloud(*shape("capsule"))
     exact = 2 * np.pi * 0.2 * 1.4 + 4 * np.pi * 0.2**2
     assert surface.areas.sum() == pytest.approx(exact, rel=0.02)  # flat triangles of 0.05 on a radius of 0.2
 
@@ -34,7 +34,7 @@ def test_normals_of_a_sphere_point_outward_from_any_target() -> None:
     directions = GENERATOR.normal(size=(800, 3))
     points = directions / np.linalg.norm(directions, axis=1)[:, None]
     for target in ([0.0, 0, 0], [0.0, 0, 3]):
-        surface = oriented_surface(points, np.broadcast_to(target, points.shape))
+        surface = oriented_cloud(points, np.broadcast_to(target, points.shape))
         assert (np.einsum("ij,ij->i", surface.normals, points) > 0.9).mean() > 0.99
         assert surface.trusted
     assert surface.oriented_by == "propagation"  # away from a place outside, half of them point inward
@@ -54,16 +54,16 @@ def test_signs_pass_along_a_chain() -> None:
 def test_two_parts_get_their_signs_apart() -> None:
     one = shape("capsule", 600)
     cloud, targets = np.concatenate([one[0], one[0] + 9]), np.concatenate([one[1], one[1] + 9])
-    assert oriented_surface(cloud, targets).consistency > 0.95
+    assert oriented_cloud(cloud, targets).consistency > 0.95
 
 
 def test_an_open_patch_has_no_inside() -> None:
     """A bent sheet: whatever its normals, there is nothing behind it."""
     flat = GENERATOR.random((1500, 2))
     sheet = np.stack([flat[:, 0], flat[:, 1], 0.2 * np.sin(3 * flat[:, 0])], axis=1)
-    surface = oriented_surface(sheet, np.broadcast_to(sheet.mean(axis=0), sheet.shape))
+    surface = oriented_cloud(sheet, np.broadcast_to(sheet.mean(axis=0), sheet.shape))
     assert not surface.trusted
-    loops, reason = solid_loops(surface)
+    loops, reason = solid_handles(surface)
     assert loops is None
     assert "agree on an inside" in reason
     document = evaluate(sheet, sheet[:50]).as_dict()
@@ -124,18 +124,18 @@ def test_noise_and_uneven_density_keep_the_handles(name: str) -> None:
     true = shape_graph(name)
     handles = len(true.edges) - len(true.nodes) + 1
     for degraded in ({"noise": 0.2}, {"uneven": 10.0}):
-        assert solid_loops(oriented_surface(*shape(name, 4096, **degraded))) == (handles, "")
+        assert solid_handles(oriented_cloud(*shape(name, 4096, **degraded))) == (handles, "")
 
 
 def test_undecided_handles_are_null_with_the_candidates() -> None:
     """A ring with a gap of about its own thickness: closed or open, depending on what counts as inside."""
-    surface = oriented_surface(*shape("torus", 2000))
+    surface = oriented_cloud(*shape("torus", 2000))
     angle = np.arctan2(surface.points[:, 1], surface.points[:, 0])
     found = set()
     for gap in np.linspace(0.05, 0.6, 12):
         kept = np.abs(angle) > gap
-        cut = Surface(surface.points[kept], surface.normals[kept], surface.areas[kept], consistency=1.0)
-        found.add(solid_loops(cut))
+        cut = OrientedCloud(surface.points[kept], surface.normals[kept], surface.areas[kept], consistency=1.0)
+        found.add(solid_handles(cut))
     assert (1, "") in found
     assert (0, "") in found
     assert (None, "0 or 1 handles, depending on the level of the inside") in found
@@ -145,7 +145,7 @@ def test_more_handles_than_the_surface_has_loops_are_not_decided() -> None:
     """Each handle of a solid is a loop of its surface: where that does not show, the cloud is too sparse to say."""
     cloud, targets = shape("torus", 2000)
     subject = make_subject(cloud, None, None, None, None, "side")
-    surface = oriented_surface(cloud, targets)
+    surface = oriented_cloud(cloud, targets)
     enough, none = (count_loops(np.array([[1.0, d]]), surface, subject, MetricParams()) for d in (9.0, 2.0))
     assert (enough.surface, enough.solid) == (1, 1)
     assert (none.surface, none.solid) == (0, None)

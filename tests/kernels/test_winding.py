@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 
 from reference.quality import winding_number
-from tiskel.geometry.oriented import SOFTENING, Surface
+from tiskel.geometry.oriented import SOFTENING, OrientedCloud
 
 GENERATOR = np.random.default_rng(5)
 
 
-def sphere(count: int) -> Surface:
+def sphere(count: int) -> OrientedCloud:
     """A Fibonacci sphere: nearly equal areas, exact normals."""
     i = np.arange(count) + 0.5
     z, turn = 1 - 2 * i / count, np.pi * (1 + 5**0.5) * i
     points = np.stack([np.sqrt(1 - z * z) * np.cos(turn), np.sqrt(1 - z * z) * np.sin(turn), z], axis=1)
-    return Surface(points, points, np.full(count, 4 * np.pi / count))
+    return OrientedCloud(points, points, np.full(count, 4 * np.pi / count))
 
 
-def plain(surface: Surface, queries: np.ndarray) -> np.ndarray:
+def plain(surface: OrientedCloud, queries: np.ndarray) -> np.ndarray:
     dipoles = surface.normals * surface.areas[:, None]
     return np.array([winding_number(q, surface.points, dipoles, SOFTENING * surface.areas) for q in queries])
 
@@ -25,7 +25,7 @@ def plain(surface: Surface, queries: np.ndarray) -> np.ndarray:
 def test_one_block_equals_the_plain_sum() -> None:
     count = 20  # fewer than a block; queries within twice its radius, so that nothing is summed up
     points = GENERATOR.normal(size=(count, 3))
-    surface = Surface(points, GENERATOR.normal(size=(count, 3)), GENERATOR.random(count))
+    surface = OrientedCloud(points, GENERATOR.normal(size=(count, 3)), GENERATOR.random(count))
     queries = points[:5] + 0.1
     # twenty summands of order one in another order
     np.testing.assert_allclose(surface.winding_numbers(queries), plain(surface, queries), atol=1e-13)
@@ -51,7 +51,7 @@ def test_a_sphere_winds_once_around_its_inside(radius: float, number: float) -> 
 def test_a_hemisphere_is_half_as_much_at_its_centre() -> None:
     whole = sphere(4000)
     upper = whole.points[:, 2] > 0
-    half = Surface(whole.points[upper], whole.normals[upper], whole.areas[upper])
+    half = OrientedCloud(whole.points[upper], whole.normals[upper], whole.areas[upper])
     assert half.winding_numbers(np.zeros((1, 3)))[0] == pytest.approx(0.5, abs=0.02)  # the blocks' error, as above
 
 

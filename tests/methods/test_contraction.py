@@ -1,5 +1,7 @@
 """Whole contractions: against the toolbox, against the plain implementation, and by their invariants."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from reference.fixtures import Load
 from reference.rings import published
 from tiskel import (
     ContractionParams,
+    GlsParams,
     ShapeParams,
     Status,
     TiskelError,
@@ -22,7 +25,7 @@ from tiskel.methods.laplacian.gls import contract_gls
 from tiskel.methods.laplacian.lbc import published_rings
 from tiskel.params import published_neighbours
 
-GLS = ContractionParams(method="gls")
+GLS = GlsParams()
 CLOUDS = ["hammer", "horse", "joint", "cave", "fertility"]
 LBC_MEDIAN = {"hammer": 1e-5, "horse": 1e-4, "joint": 1e-4, "cave": 1e-4, "fertility": 1e-4}
 
@@ -51,6 +54,7 @@ def test_gls_equals_the_plain_implementation_of_the_paper_exactly(name: str, ref
     assert [step.points for step in ours.steps] == theirs.counts
     assert ours.status.value == theirs.status
     np.testing.assert_array_equal(ours.rows, theirs.rows)
+    assert ours.rings is not None
     assert [ours.rings.of(i).tolist() for i in range(len(ours.rows))] == [ring for ring, _ in theirs.rings]
     np.testing.assert_array_equal(ours.points, theirs.points)
 
@@ -88,7 +92,7 @@ def test_the_departures_of_the_toolbox_are_understood(name: str, reference_cloud
 @pytest.mark.parametrize("name", ["capsule", "torus", "hand"])
 def test_contraction_keeps_its_books(name: str, method: str) -> None:
     cloud = make_shape(shape_graph(name), ShapeParams(count=1500))[0]
-    c = contract(cloud, ContractionParams(method=method))  # type: ignore[arg-type]
+    c = contract(cloud, ContractionParams(method=method))
     assert isinstance(c.status, Status)
     np.testing.assert_array_equal(c.origin, cloud[c.rows])
     np.testing.assert_array_equal(c.history[-1], c.points)
@@ -100,6 +104,7 @@ def test_contraction_keeps_its_books(name: str, method: str) -> None:
     survivor = c.survivor_of()
     assert ((survivor >= 0) & (survivor < len(c.points))).all()
     np.testing.assert_array_equal(survivor[c.rows], np.arange(len(c.rows)))
+    assert c.rings is not None
     assert c.rings.members.max() < len(c.points)
     assert c.steps[-1].points == len(c.points)
 
@@ -116,7 +121,7 @@ def test_a_capsule_contracts_to_its_axis() -> None:
 @pytest.mark.parametrize("method", ["gls", "lbc"])
 def test_scale_and_place_of_the_input_do_not_matter(method: str, capsule: np.ndarray) -> None:
     """A shift by a power of two times the scale is exact in binary, so the normalised clouds agree to rounding."""
-    params = ContractionParams(method=method, max_steps=1)  # type: ignore[arg-type]
+    params = ContractionParams(method=method, max_steps=1)
     here, there = contract(capsule, params), contract(capsule * 1000 + 4096, params)
     assert len(here.points) == len(there.points)
     np.testing.assert_allclose((there.points - 4096) / 1000, here.points, atol=1e-5)
@@ -124,7 +129,7 @@ def test_scale_and_place_of_the_input_do_not_matter(method: str, capsule: np.nda
 
 @pytest.mark.parametrize("method", ["robust", "gls", "lbc"])
 def test_broken_rows_and_duplicates_are_dropped_counted_and_said(method: str, capsule: np.ndarray) -> None:
-    params = ContractionParams(method=method)  # type: ignore[arg-type]
+    params = ContractionParams(method=method)
     dirty = np.concatenate([[[np.nan, 0, 0]], capsule, capsule[:7], [[0, np.inf, 0]]])
     c = contract(dirty, params)
     assert c.warnings[:2] == ("2 rows with NaN or Inf were dropped", "7 exact duplicates were merged")
@@ -192,8 +197,14 @@ def test_cholmod_agrees_with_superlu(capsule: np.ndarray) -> None:
         ({"method": "magic"}, "method must be one of robust, gls, lbc"),
         ({"neighbours": 2}, "at least 4"),
         ({"max_steps": 0}, "at least 1"),
+        ({"solver": "scipy"}, "solver is a setting of methods gls and lbc, robust does not read it; leave it out"),
+        ({"method": "lbc", "theta": 0.1}, "theta is a setting of method gls, lbc does not read it"),
+        ({"method": "gls", "bridge_gaps": 1.0}, "bridge_gaps is a setting of method robust, gls does not read it"),
+        ({"colour": "red"}, "no method has a setting colour; robust has "),
+        ({"resolution": 0.0}, "resolution must be a number at least 0.5, got 0.0"),
+        ({"least_part": 2.0}, "least_part must be a number from 0 to 1, got 2.0"),
     ],
 )
-def test_wrong_settings_are_refused(settings: dict[str, object], said: str) -> None:
+def test_wrong_settings_are_refused(settings: dict[str, Any], said: str) -> None:
     with pytest.raises(TiskelError, match=said):
-        ContractionParams(**settings)  # type: ignore[arg-type]
+        ContractionParams(**settings)

@@ -1,6 +1,7 @@
 """Method robust from cloud to skeleton: topology, ends, distances and warnings, against shapes whose truth is known."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,20 +9,34 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from reference.fixtures import Load
-from tiskel import ContractionParams, ShapeParams, Skeleton, contract, extract_skeleton, make_shape, shape_graph
+from tiskel import (
+    ContractionParams,
+    ShapeParams,
+    Skeleton,
+    SkeletonParams,
+    TiskelError,
+    contract,
+    extract_skeleton,
+    make_shape,
+    read_contraction,
+    shape_graph,
+    write_contraction,
+)  # fmt: skip
 from tiskel.arrays import Indices, Points, diagonal, normalisation
 from tiskel.gallery.catalogue import SHAPES
 from tiskel.gallery.random_graphs import random_graph
 from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.graph import tidy_edges
 from tiskel.geometry.round_cones import union_distance
-from tiskel.methods.robust.checks import doubts
-from tiskel.methods.robust.curve import tidy_edges
+from tiskel.geometry.solid import solid_of
+from tiskel.methods.robust.checks import Candidate, warnings_of
 from tiskel.methods.robust.cycles import short_cycles, without_filled_cycles
 from tiskel.methods.robust.fit import fit_cones
-from tiskel.methods.robust.network import neighbour_network
-from tiskel.methods.robust.pipeline import Built, build
-from tiskel.methods.robust.sections import section_curve
+from tiskel.methods.robust.network import neighbour_network, prepared
+from tiskel.methods.robust.pipeline import fitted_curve
+from tiskel.methods.robust.sections import section_graph
 from tiskel.metrics.truth import agreement
+from tiskel.params import RobustParams
 
 
 def skeleton_of(points: Points) -> Skeleton:
@@ -29,7 +44,7 @@ def skeleton_of(points: Points) -> Skeleton:
 
 
 def places(s: Skeleton) -> Points:
-    return np.concatenate([s.nodes, curve_samples(s.nodes, s.edges, 1000).points])
+    return np.concatenate([s.nodes, curve_samples(s, 1000).points])
 
 
 @pytest.mark.parametrize("name", sorted(SHAPES))
@@ -38,7 +53,7 @@ def test_clean_shapes_are_right(name: str) -> None:
     shape = shape_graph(name)
     cloud = make_shape(shape)[0]
     s = skeleton_of(cloud)
-    found = agreement(s.nodes, s.edges, shape)
+    found = agreement(s, shape)
     assert found.topology_right
     assert found.to_truth is not None
     assert found.from_truth is not None
@@ -59,7 +74,7 @@ def test_ends_lie_in_the_tips() -> None:
     for name in SHAPES:
         shape = shape_graph(name)
         s = skeleton_of(make_shape(shape)[0])
-        one = agreement(s.nodes, s.edges, shape)
+        one = agreement(s, shape)
         true, found, spurious = true + one.true_ends, found + one.ends, spurious + one.spurious_ends
     assert found >= 0.95 * true
     assert spurious <= 0.05 * true
@@ -70,7 +85,7 @@ def test_degraded_shapes_keep_their_topology(name: str) -> None:
     shape = shape_graph(name)
     for degraded in ({"noise": 0.25}, {"missing": 0.1}, {"uneven": 10.0}, {"count": 1024}):
         s = skeleton_of(make_shape(shape, ShapeParams(**degraded))[0])
-        assert agreement(s.nodes, s.edges, shape).topology_right, degraded
+        assert agreement(s, shape).topology_right, degraded
 
 
 @pytest.mark.parametrize("loops", [0, 1, 3])
@@ -135,7 +150,7 @@ def test_turning_a_regular_cloud_changes_less_than_a_hundredth_of_the_diagonal(n
     s = skeleton_of(cloud)
     turn = Rotation.random(random_state=4).as_matrix()
     t = skeleton_of(cloud @ turn.T)
-    assert (s.components, s.loops, s.ends, s.joints) == (t.components, t.loops, t.ends, t.joints)
+    assert (s.components, s.loops, s.ends, s.junctions) == (t.components, t.loops, t.ends, t.junctions)
     there, back = places(s), places(t) @ turn
     assert cKDTree(there).query(back)[0].max() < 0.01 * diagonal(cloud)
     assert cKDTree(back).query(there)[0].max() < 0.01 * diagonal(cloud)
@@ -177,80 +192,104 @@ def test_holes_in_the_scan_make_no_loops(name: str) -> None:
     cloud = make_shape(shape, ShapeParams(missing=0.3, seed=3))[0]
     c = contract(cloud)
     assert c.sections is not None
-    assert c.levels is not None
     network = neighbour_network(c.origin, 14)
-    raw = section_curve(network, c.sections, c.levels)
-    filled = without_filled_cycles(raw, network, network.oriented(c.points), fitted=False)
-    loops = [len(curve.edges) - len(curve.nodes) + 1 for curve in (raw, filled)]
-    true = len(shape.edges) - len(shape.nodes) + 1
-    assert loops[0] > true == loops[1]
+    raw = section_graph(network, c.sections)
+    filled = without_filled_cycles(raw, network, c.sections, solid_of(network.oriented(c.points)), fitted=False)
+    assert raw.loops > shape.loops == filled.loops
 
 
 def test_the_loop_of_a_torus_is_no_filled_cycle() -> None:
     c = contract(make_shape(shape_graph("torus"))[0])
     assert c.sections is not None
-    assert c.levels is not None
     network = neighbour_network(c.origin, 14)
-    curve = section_curve(network, c.sections, c.levels)
-    kept = without_filled_cycles(curve, network, network.oriented(c.points), fitted=False)
+    curve, solid = section_graph(network, c.sections), solid_of(network.oriented(c.points))
+    kept = without_filled_cycles(curve, network, c.sections, solid, fitted=False)
     assert len(short_cycles(kept)) == 1
     assert max(map(len, short_cycles(kept))) > 15
 
 
-def built(name: str, points: Points | None = None) -> Built:
+def fitted(name: str, points: Points | None = None) -> Candidate:
     cloud = make_shape(shape_graph(name))[0] if points is None else points
     c = contract(cloud)
     assert c.sections is not None
-    assert c.levels is not None
     frame = normalisation(c.origin)
-    return build(frame.apply(c.origin), frame.apply(c.points), c.sections, c.levels, 14)
+    network = prepared(frame.apply(c.origin), 14)
+    solid = solid_of(network.oriented(frame.apply(c.points) @ network.axes.T))
+    return fitted_curve(network, solid, c.sections, RobustParams())
 
 
-def with_edges(made: Built, edges: Indices) -> Built:
+def with_edges(made: Candidate, edges: Indices) -> Candidate:
     curve = replace(made.curve, edges=edges)
-    return replace(made, curve=curve, feet=fit_cones(curve, made.network.points, 0)[1])
+    fit = fit_cones(curve, made.network.points, made.sections.section, rounds=0, straightness=0)
+    return replace(made, curve=curve, fit=fit)
 
 
 def test_a_good_skeleton_raises_no_doubt() -> None:
     for name in ("y", "torus", "mug", "ladder"):
-        assert doubts(built(name)) == ()
+        assert warnings_of(fitted(name)) == ()
 
 
 def test_a_missing_loop_and_a_surplus_one_are_told() -> None:
-    ring = built("torus")
+    ring = fitted("torus")
     opened = with_edges(ring, ring.curve.edges[1:])
-    assert any("the body has 1 handles, the curve only 0 loops" in doubt for doubt in doubts(opened))
-    y = built("y")
+    assert any("the body has 1 handles, the curve only 0 loops" in line for line in warnings_of(opened))
+    y = fitted("y")
     ends = np.flatnonzero(y.curve.degrees == 1)[:2]
     closed = with_edges(y, tidy_edges(np.concatenate([y.curve.edges, [ends]])))
-    told = doubts(closed)
-    assert any("the curve has 1 loops, the body only 0 handles" in doubt for doubt in told)
-    assert any("of the curve lies outside the body" in doubt for doubt in told)
+    told = warnings_of(closed)
+    assert any("the curve has 1 loops, the body only 0 handles" in line for line in told)
+    assert any("of the curve lies outside the body" in line for line in told)
 
 
 def test_what_is_no_curve_is_told() -> None:
     generator = np.random.default_rng(0)
     ball = generator.normal(size=(3000, 3))
     ball /= np.linalg.norm(ball, axis=1)[:, None]
-    assert any("hardly longer than it is thick" in doubt for doubt in doubts(built("", ball)))
+    assert any("hardly longer than it is thick" in line for line in warnings_of(fitted("", ball)))
     slab = generator.uniform(-1, 1, (4000, 3)) * [1, 0.8, 0]
     slab[:, 2] = 0.12 * np.sign(generator.random(4000) - 0.5)
-    assert any("where the body is flat" in doubt for doubt in doubts(built("", slab)))
+    assert any("where the body is flat" in line for line in warnings_of(fitted("", slab)))
     few = make_shape(shape_graph("tree"), ShapeParams(count=2000))[0]
-    assert any("too few points for the thickness" in doubt for doubt in doubts(built("", few)))
+    assert any("too few points for the thickness" in line for line in warnings_of(fitted("", few)))
 
 
-def test_raw_joins_contracted_points_as_published(capsule: Points) -> None:
-    from tiskel import SkeletonParams
-
+def test_feet_are_on_the_curve_and_raw_is_no_setting(capsule: Points) -> None:
     c = contract(capsule)
-    raw, fitted = extract_skeleton(c, SkeletonParams(raw=True)), extract_skeleton(c)
-    np.testing.assert_array_equal(raw.contracted, c.points)
-    assert raw.warnings == ()
-    assert not np.array_equal(raw.contracted, fitted.contracted)
-    # feet on the curve: closer to it than rounding of the edges
-    samples = curve_samples(fitted.nodes, fitted.edges, 4000).points
-    assert cKDTree(samples).query(fitted.contracted)[0].max() < 1e-3
+    s = extract_skeleton(c)
+    assert not np.array_equal(s.contracted, c.points)
+    # closer to it than rounding of the edges
+    assert cKDTree(curve_samples(s, 4000).points).query(s.contracted)[0].max() < 1e-3
+    with pytest.raises(TiskelError, match="raw is a setting of methods gls and lbc, robust does not read it"):
+        extract_skeleton(c, SkeletonParams(raw=True))
+
+
+def test_settings_do_what_they_say() -> None:
+    """Each on a cloud where it matters; benchmarks/sensitivity.py turns all of them."""
+    cloud = make_shape(shape_graph("capsule"), ShapeParams(count=3000))[0]
+    cut = contract(cloud[np.abs(cloud[:, 2]) > 0.2])
+    assert extract_skeleton(cut).bridged.any()
+    assert extract_skeleton(cut, SkeletonParams(bridge_gaps=0)).components == 2
+    y = contract(make_shape(shape_graph("y"))[0])
+    assert extract_skeleton(y, SkeletonParams(least_branch=50)).ends == 2
+    assert extract_skeleton(y, SkeletonParams(grow_ends=0)).length < extract_skeleton(y).length
+    two = contract(make_shape(shape_graph("quadruped"))[0])
+    assert extract_skeleton(two, SkeletonParams(merge_junctions=50)).junctions < extract_skeleton(two).junctions
+    pieces = np.concatenate([cloud, cloud[:300] * 0.05 + 3])
+    assert extract_skeleton(contract(pieces, RobustParams(least_part=0.2))).components == 1
+    coarse, fine = (len(extract_skeleton(contract(cloud, RobustParams(resolution=w))).nodes) for w in (8, 2))
+    assert coarse < fine
+
+
+def test_the_curve_is_the_same_from_a_file_and_from_memory(tmp_path: Path) -> None:
+    """What the contraction prepared is used where it is there, and changes nothing."""
+    c = contract(make_shape(shape_graph("mug"))[0])
+    write_contraction(tmp_path / "c.ply", c)
+    read = read_contraction(tmp_path / "c.ply")
+    assert c.prepared is not None
+    assert read.prepared is None
+    one, other = extract_skeleton(c), extract_skeleton(read)
+    np.testing.assert_array_equal(one.nodes, other.nodes)
+    np.testing.assert_array_equal(one.contracted, other.contracted)
 
 
 def test_the_smallest_clouds_come_through() -> None:

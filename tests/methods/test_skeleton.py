@@ -13,15 +13,15 @@ from tiskel import (
     SkeletonParams,
     contract,
     extract_skeleton,
-    graph,
     make_shape,
     shape_graph,
 )
-from tiskel.arrays import normalisation
+from tiskel.arrays import Indices, normalisation
+from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.rings import Rings
 from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edges
+from tiskel.methods.laplacian.curve import without_spurs
 from tiskel.methods.laplacian.sampling import front_samples
-from tiskel.skeleton import Skeleton, prune_spurs
 
 
 def edges(*pairs: tuple[int, int]) -> np.ndarray:
@@ -89,9 +89,9 @@ def test_collapsing_leaves_no_triangle_and_keeps_components() -> None:
         pairs = np.unique(np.sort(generator.integers(30, size=(60, 2)), axis=1), axis=0)
         pairs = pairs[pairs[:, 0] != pairs[:, 1]].astype(np.int32)
         left, links, into = collapse_triangles(nodes, pairs)
-        around = [set(n) for n in graph.neighbour_lists(len(left), links)]
+        around = [set(n) for n in CurveGraph(left, links).neighbours]
         assert not any(around[a] & around[b] for a, b in links)
-        assert graph.component_count(len(left), links) == graph.component_count(30, pairs)
+        assert CurveGraph(left, links).components == CurveGraph(nodes, pairs).components
         assert set(into.tolist()) == set(range(len(left)))
 
 
@@ -115,57 +115,46 @@ def test_a_single_triangle_collapses_to_an_edge_with_the_survivor_at_the_midpoin
 )
 def test_branches_run_from_stop_to_stop_and_loops_close(links: np.ndarray, expected: list[list[int]]) -> None:
     count = max(int(links.max(initial=0)) + 1, 4 if not len(links) else 0)
-    found = graph.branches(count, links)
+    found = CurveGraph(np.zeros((count, 3)), links).branches
     assert sorted(min(b.tolist(), b.tolist()[::-1]) for b in found) == sorted(min(b, b[::-1]) for b in expected)
 
 
 def test_every_edge_lies_on_exactly_one_branch() -> None:
     for name in ("hand", "torus", "two-holed-torus", "mug"):
         shape = shape_graph(name)
-        lines = [b.tolist() for b in graph.branches(len(shape.nodes), shape.edges)]
+        lines = [b.tolist() for b in shape.branches]
         walked = [tuple(sorted(pair)) for line in lines for pair in itertools.pairwise(line)]
         assert sorted(walked) == sorted(map(tuple, shape.edges.tolist())), name
 
 
-def ball_chain(nodes: np.ndarray, links: np.ndarray, radius: float) -> Skeleton:
-    """A skeleton with one point of the cloud at the given radius around every node."""
-    cloud = nodes + [0, 0, radius]
+def pruned(nodes: np.ndarray, links: np.ndarray, radius: float) -> tuple[CurveGraph, Indices]:
+    """Without its spurs, a curve with one point of the cloud at the given radius around every node."""
     rows = np.arange(len(nodes), dtype=np.int32)
-    return Skeleton(
-        nodes,
-        links,
-        np.full(len(nodes), radius),
-        graph.branches(len(nodes), links),
-        rows,
-        cloud,
-        rows,
-        nodes,
-        cloud,
-        rows,
-    )
+    curve = CurveGraph(nodes, links, np.full(len(nodes), radius))
+    return without_spurs(curve, nodes + [0, 0, radius], rows)
 
 
 def test_spurs_shorter_than_the_local_radius_go_and_their_points_go_to_the_joint() -> None:
     nodes = np.array([[-2.0, 0, 0], [0, 0, 0], [2, 0, 0], [0, 0.4, 0]])
-    s = prune_spurs(ball_chain(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5))
-    assert s.edges.tolist() == [[0, 1], [1, 2]]
-    assert s.node_of_point.tolist() == [0, 1, 2, 1]
-    assert len(s.branches) == 1
+    curve, node_of_point = pruned(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5)
+    assert curve.edges.tolist() == [[0, 1], [1, 2]]
+    assert node_of_point.tolist() == [0, 1, 2, 1]
+    assert len(curve.branches) == 1
 
 
 def test_ends_of_a_plain_rod_are_no_spurs_and_long_spurs_stay() -> None:
-    rod = prune_spurs(ball_chain(np.array([[0.0, 0, 0], [0.1, 0, 0]]), edges((0, 1)), radius=0.5))
+    rod, _ = pruned(np.array([[0.0, 0, 0], [0.1, 0, 0]]), edges((0, 1)), radius=0.5)
     assert len(rod.nodes) == 2
     nodes = np.array([[-2.0, 0, 0], [0, 0, 0], [2, 0, 0], [0, 0.6, 0]])
-    assert len(prune_spurs(ball_chain(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5)).nodes) == 4
+    assert len(pruned(nodes, edges((0, 1), (1, 2), (1, 3)), radius=0.5)[0].nodes) == 4
 
 
 def test_a_joint_that_loses_a_spur_keeps_its_other_ends() -> None:
     """Of a joint with three short ends only one is a spur: without it the rest is a rod."""
     nodes = np.array([[0.0, 0, 0], [0.3, 0, 0], [-0.2, 0, 0], [0, 0.1, 0]])
-    s = prune_spurs(ball_chain(nodes, edges((0, 1), (0, 2), (0, 3)), radius=0.5))
-    assert len(s.nodes) == 3
-    assert s.ends == 2
+    curve, _ = pruned(nodes, edges((0, 1), (0, 2), (0, 3)), radius=0.5)
+    assert len(curve.nodes) == 3
+    assert curve.ends == 2
 
 
 @pytest.mark.parametrize("raw", [True, False])
@@ -180,7 +169,7 @@ def test_skeleton_parts_fit_together(name: str, raw: bool) -> None:
         assert s.radius[node] == pytest.approx(own[s.node_of_point == node].mean())
     assert (s.edges[:, 0] < s.edges[:, 1]).all()
     assert s.loops == len(s.edges) - len(s.nodes) + s.components
-    assert (s.branch_of_node() == -1).sum() == s.joints
+    assert (s.branch_of_node() == -1).sum() == s.junctions
 
 
 def test_radius_of_a_capsule_is_that_of_the_capsule() -> None:

@@ -7,7 +7,7 @@ from reference.fixtures import Load
 from reference.quality import hull_beta
 from tiskel import ShapeParams, make_shape, shape_graph
 from tiskel.arrays import Points
-from tiskel.geometry.oriented import oriented_surface
+from tiskel.geometry.oriented import oriented_cloud
 from tiskel.metrics.boundedness import HULL, OUTSIDE, boundedness, hull_share, outside_hull
 
 
@@ -100,7 +100,7 @@ def test_outside_a_torus_tube_beta_fails_and_the_inside_test_does_not() -> None:
     ring = np.stack([np.cos(turn[:, 0]), np.sin(turn[:, 0]), np.zeros(300)], axis=1)
     away = np.cos(turn[:, 1])[:, None] * ring + np.sin(turn[:, 1])[:, None] * [0, 0, 1]
     outside, inside = 0.7 * ring + 0.22 * away, 0.7 * ring + 0.18 * away
-    surface = oriented_surface(cloud, 0.7 * cloud * [1, 1, 0] / np.linalg.norm(cloud[:, :2], axis=1)[:, None])
+    surface = oriented_cloud(cloud, 0.7 * cloud * [1, 1, 0] / np.linalg.norm(cloud[:, :2], axis=1)[:, None])
     assert 0.2 < boundedness(outside, cloud).bounded.mean() < 0.7  # the paper's definition assumes a convex shape
     assert boundedness(inside, cloud).bounded.mean() > 0.95
     assert surface.contains(outside).mean() < 0.02

@@ -7,6 +7,7 @@ from tiskel import MetricParams, evaluate
 from tiskel.arrays import Points
 from tiskel.geometry.curve import curve_samples, vertex_tangents
 from tiskel.geometry.ellipse import fit_ellipse
+from tiskel.geometry.graph import CurveGraph
 from tiskel.metrics.centredness import before_gap, neighbourhood_size, point_centredness, section_centredness
 
 RADIUS, HALF = 0.3, 1.0
@@ -134,7 +135,7 @@ def test_samples_follow_the_rule() -> None:
     """Each edge its share of 200, at least one, the first vertex excluded and the last included."""
     nodes = np.array([[0.0, 0, 0], [3, 0, 0], [3, 1, 0], [3.001, 1, 0]])
     edges = np.array([[0, 1], [1, 2], [2, 3]], np.int32)
-    s = curve_samples(nodes, edges, 200)
+    s = curve_samples(CurveGraph(nodes, edges), 200)
     assert np.bincount(s.edges).tolist() == [150, 50, 1]
     np.testing.assert_allclose(s.points[0], [3 / 150, 0, 0])
     np.testing.assert_array_equal(s.points[[149, 199, 200]], nodes[1:])
@@ -145,14 +146,14 @@ def test_samples_follow_the_rule() -> None:
 def test_at_a_vertex_the_direction_is_the_tangent_of_the_circle() -> None:
     turn = np.array([0.1, 0.5, 1.3])
     nodes = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
-    tangent = vertex_tangents(nodes, np.array([[0, 1], [1, 2]], np.int32))
+    tangent = vertex_tangents(CurveGraph(nodes, np.array([[0, 1], [1, 2]], np.int32)))
     np.testing.assert_allclose(tangent[1], [-np.sin(0.5), np.cos(0.5), 0], atol=1e-12)
     assert not tangent[[0, 2]].any()
 
 
 def test_joints_and_edges_without_length_have_no_direction() -> None:
     nodes = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 1]])
-    s = curve_samples(nodes, np.array([[1, 0], [2, 0], [3, 0], [3, 4]], np.int32), 30)
+    s = curve_samples(CurveGraph(nodes, np.array([[1, 0], [2, 0], [3, 0], [3, 4]], np.int32)), 30)
     at_joint = (s.points == 0).all(axis=1)
     assert at_joint.sum() == 3
     assert not s.directed[at_joint].any()

@@ -5,6 +5,7 @@ import pytest
 
 from tiskel import MetricParams
 from tiskel.arrays import Points
+from tiskel.geometry.graph import CurveGraph
 from tiskel.metrics.smoothness import curve_smoothness, hairpins, nearest_others, point_smoothness, vertex_smoothness
 
 
@@ -24,8 +25,8 @@ def test_a_zigzag_scores_its_closed_form(turn: float) -> None:
     """Between edges there are pi - turn, so s = |1 - 2 (1 - turn / pi)|; nine of ten edges' length are weighed."""
     nodes = zigzag(turn)
     s = abs(1 - 2 * (1 - turn / np.pi))
-    np.testing.assert_allclose(vertex_smoothness(nodes, chain(nodes))[1], s, atol=1e-7)  # arccos near 1
-    assert curve_smoothness(nodes, chain(nodes)) == pytest.approx(1 - 0.9 * (1 - s), abs=1e-7)
+    np.testing.assert_allclose(vertex_smoothness(CurveGraph(nodes, chain(nodes)))[1], s, atol=1e-7)  # arccos near 1
+    assert curve_smoothness(CurveGraph(nodes, chain(nodes))) == pytest.approx(1 - 0.9 * (1 - s), abs=1e-7)
 
 
 def test_a_right_angle_is_the_worst_and_a_hairpin_scores_like_a_line_but_is_reported() -> None:
@@ -33,24 +34,24 @@ def test_a_right_angle_is_the_worst_and_a_hairpin_scores_like_a_line_but_is_repo
         np.array([[1.0, 0, 0], [0, 0, 0], end]) for end in ([-1.0, 0, 0], [0.0, 1, 0], [1, 1e-6, 0])
     )
     edges = chain(line)
-    assert curve_smoothness(line, edges) == pytest.approx(1)
-    assert curve_smoothness(corner, edges) == pytest.approx(0.5)  # the vertex weighs half the length
-    assert curve_smoothness(hairpin, edges) == pytest.approx(1, abs=1e-5)
-    assert [hairpins(nodes, edges) for nodes in (line, corner, hairpin)] == [0, 0, 1]
+    assert curve_smoothness(CurveGraph(line, edges)) == pytest.approx(1)
+    assert curve_smoothness(CurveGraph(corner, edges)) == pytest.approx(0.5)  # the vertex weighs half the length
+    assert curve_smoothness(CurveGraph(hairpin, edges)) == pytest.approx(1, abs=1e-5)
+    assert [hairpins(CurveGraph(nodes, edges)) for nodes in (line, corner, hairpin)] == [0, 0, 1]
 
 
 def test_joints_and_ends_are_left_out() -> None:
     star = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     edges = np.array([[0, 1], [0, 2], [0, 3]], np.int32)
-    assert len(vertex_smoothness(star, edges)[0]) == 0
-    assert curve_smoothness(star, edges) == 1
+    assert len(vertex_smoothness(CurveGraph(star, edges))[0]) == 0
+    assert curve_smoothness(CurveGraph(star, edges)) == 1
 
 
 def test_a_curve_without_length_has_no_smoothness() -> None:
-    assert curve_smoothness(np.ones((3, 3)), chain(np.ones((3, 3)))) is None
+    assert curve_smoothness(CurveGraph(np.ones((3, 3)), chain(np.ones((3, 3))))) is None
     doubled = np.array([[0.0, 0, 0], [1, 0, 0], [1, 0, 0], [2, 0, 0]])
-    assert np.isnan(vertex_smoothness(doubled, chain(doubled))[1]).all()
-    assert curve_smoothness(doubled, chain(doubled)) == pytest.approx(1)
+    assert np.isnan(vertex_smoothness(CurveGraph(doubled, chain(doubled)))[1]).all()
+    assert curve_smoothness(CurveGraph(doubled, chain(doubled))) == pytest.approx(1)
 
 
 def points_along(line: Points, per_edge: int = 40) -> Points:

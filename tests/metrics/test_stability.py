@@ -162,4 +162,4 @@ def test_only_points_that_survive_count_and_documents_hold_no_nan(capsule: Point
 
 def test_a_contraction_without_steps_is_refused(capsule_contraction: Contraction) -> None:
     with pytest.raises(TiskelError, match="nothing to compare"):
-        assess_stability(replace(capsule_contraction, history=capsule_contraction.history[:0]))
+        assess_stability(replace(capsule_contraction, history=capsule_contraction.history[:0], steps=()))

@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from reference.fixtures import Load
 from tiskel import MetricParams, ShapeParams, TiskelError, make_shape, shape_graph
 from tiskel.arrays import Numbers, Points
-from tiskel.geometry.graph import component_count
+from tiskel.geometry.graph import CurveGraph
 from tiskel.metrics.barcode import barcode, delaunay_edges
 from tiskel.metrics.distances import bottleneck, wasserstein
 from tiskel.metrics.topology import bars_kept, compare_topology
@@ -51,7 +51,7 @@ def test_delaunay_lengths_give_the_bars_of_the_dense_matrix(name: str) -> None:
 def test_delaunay_edges_connect_every_point(name: str) -> None:
     """Also those that the triangulation drops because they coincide with others."""
     points = CLOUDS[name]
-    assert component_count(len(points), delaunay_edges(points)) == 1
+    assert CurveGraph(points, delaunay_edges(points)).components == 1
 
 
 def test_contracted_clouds_have_the_bars_of_the_dense_matrix(toolbox: Load) -> None:

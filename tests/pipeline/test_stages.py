@@ -32,7 +32,7 @@ def test_every_shape_goes_through_every_stage(name: str, method: Literal["robust
     c = contract(cloud, ContractionParams(method=method))
     s = extract_skeleton(c)
     assert len(s.nodes) > 0
-    quality = evaluate(s.cloud, s.contracted, s.nodes, s.edges, origin=s.origin)
+    quality = evaluate(s)
     stability = assess_stability(c)
     json.dumps([quality.as_dict(), stability.as_dict()], allow_nan=False)
     assert quality.graph == pytest.approx(s.counts(), rel=1e-12)  # lengths go through normalised units

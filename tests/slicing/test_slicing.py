@@ -23,6 +23,7 @@ from tiskel import (
 from tiskel.arrays import Numbers, Points
 from tiskel.gallery.make import ShapeParams
 from tiskel.geometry.bspline import fit_strip
+from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.round_cones import union_distance
 from tiskel.io.mesh_file import dump_mesh
 from tiskel.io.ply import parse
@@ -52,15 +53,15 @@ def banana() -> Surfaces:
 
 
 def test_the_longest_path_runs_through_joints() -> None:
-    assert longest_path(FIVE, FORK).tolist() in ([0, 1, 2, 3], [3, 2, 1, 0])
-    assert [path.name for path in paths_of(FIVE, FORK, "all")] == ["0", "1", "2"]
-    assert len(paths_of(FIVE, FORK, "2")) == 1
+    assert longest_path(CurveGraph(FIVE, FORK)).tolist() in ([0, 1, 2, 3], [3, 2, 1, 0])
+    assert [path.name for path in paths_of(CurveGraph(FIVE, FORK), "all")] == ["0", "1", "2"]
+    assert len(paths_of(CurveGraph(FIVE, FORK), "2")) == 1
     with pytest.raises(TiskelError, match="no branch 7; the skeleton has 3, from 0 to 2"):
-        paths_of(FIVE, FORK, "7")
+        paths_of(CurveGraph(FIVE, FORK), "7")
 
 
 def test_a_curve_without_edges_is_one_path() -> None:
-    assert paths_of(FIVE, np.zeros((0, 2), np.int32), "all")[0].nodes.tolist() == [0, 1, 2, 3, 4]
+    assert paths_of(CurveGraph(FIVE, np.zeros((0, 2), np.int32)), "all")[0].nodes.tolist() == [0, 1, 2, 3, 4]
 
 
 def circle(count: int, radius: float, centre: tuple[float, float] = (0, 0), start: float = 0.0) -> Numbers:

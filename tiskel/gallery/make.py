@@ -8,7 +8,6 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.gallery.catalogue import SHAPES
-from tiskel.geometry import graph
 from tiskel.geometry.round_cones import ConeGraph, sample_union
 from tiskel.skeleton import Skeleton
 
@@ -91,8 +90,7 @@ def analytic_skeleton(shape: ConeGraph, cloud: Points) -> Skeleton:
     return Skeleton(
         nodes=shape.nodes,
         edges=shape.edges,
-        radius=shape.radii,
-        branches=graph.branches(len(shape.nodes), shape.edges),
+        radii=shape.radii,
         node_of_point=cKDTree(shape.nodes).query(cloud)[1].astype(np.int32),
         cloud=cloud,
         input_rows=everyone,

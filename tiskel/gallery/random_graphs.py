@@ -51,7 +51,7 @@ def random_graph(seed: int, loops: int | None = None) -> RandomGraph:
 
 def _grow(generator: np.random.Generator, loops: int, edges: int) -> ConeGraph | None:
     """Add triangles, then single edges, each at a random node; None where there is no room."""
-    shape = ConeGraph(np.zeros((1, 3)), generator.uniform(1, RATIO, 1), np.zeros((0, 2), np.int32))
+    shape = ConeGraph(np.zeros((1, 3)), np.zeros((0, 2), np.int32), generator.uniform(1, RATIO, 1))
     parts = [3] * loops + [1] * (edges - 3 * loops)
     for size in parts:
         tries = (_with_part(shape, size, generator) for _ in range(TRIES))
@@ -64,8 +64,7 @@ def _grow(generator: np.random.Generator, loops: int, edges: int) -> ConeGraph |
 
 def _with_part(shape: ConeGraph, size: int, generator: np.random.Generator) -> ConeGraph | None:
     """Return the shape with an edge, or with a triangle, at a random node of degree below four."""
-    degree = np.bincount(shape.edges.ravel(), minlength=len(shape.nodes))
-    at = int(generator.choice(np.flatnonzero(degree < 5 - (size > 1))))
+    at = int(generator.choice(np.flatnonzero(shape.degrees < 5 - (size > 1))))
     radii = generator.uniform(1, RATIO, 2 if size > 1 else 1)
     mean = (shape.radii[at] + radii.mean()) / 2
     length = mean * generator.uniform(LENGTH[0] + 3 * (size > 1), LENGTH[1])
@@ -79,20 +78,15 @@ def _with_part(shape: ConeGraph, size: int, generator: np.random.Generator) -> C
         links = [(at, first), (first, first + 1), (at, first + 1)]
     made = ConeGraph(
         np.concatenate([shape.nodes, nodes]),
-        np.concatenate([shape.radii, radii]),
         np.concatenate([shape.edges, np.array(links, np.int32)]),
+        np.concatenate([shape.radii, radii]),
     )
     return made if _lengths_fit(made) else None
 
 
 def _lengths_fit(shape: ConeGraph) -> bool:
-    ratio = edge_lengths(shape) / shape.radii[shape.edges].mean(axis=1)
+    ratio = shape.lengths / shape.radii[shape.edges].mean(axis=1)
     return bool(((ratio >= LENGTH[0]) & (ratio <= LENGTH[1])).all())
-
-
-def edge_lengths(shape: ConeGraph) -> Numbers:
-    """Return (e,) the lengths of the axes."""
-    return np.asarray(np.linalg.norm(shape.nodes[shape.edges[:, 0]] - shape.nodes[shape.edges[:, 1]], axis=1))
 
 
 def _fair_count(shape: ConeGraph) -> int:
@@ -101,7 +95,7 @@ def _fair_count(shape: ConeGraph) -> int:
 
 
 def _area(shape: ConeGraph) -> float:
-    return float((np.pi * shape.radii[shape.edges].sum(axis=1) * edge_lengths(shape)).sum())
+    return float((np.pi * shape.radii[shape.edges].sum(axis=1) * shape.lengths).sum())
 
 
 def _apart(shape: ConeGraph, count: int) -> bool:

@@ -23,7 +23,7 @@ def from_strands(strands: Iterable[Strand], *, open_ends: bool = False) -> ConeG
         names = [_node(nodes, radii, p, r) for p, r in zip(line, np.broadcast_to(given, len(line)), strict=True)]
         edges += [(min(a, b), max(a, b)) for a, b in pairwise(names)]
     opened = (0, len(nodes) - 1) if open_ends else ()
-    return ConeGraph(np.array(nodes), np.array(radii), np.array(edges, np.int32), opened)
+    return ConeGraph(np.array(nodes), np.array(edges, np.int32), np.array(radii), open_ends=opened)
 
 
 def _node(

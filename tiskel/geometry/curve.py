@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
-from tiskel.geometry import graph
+from tiskel.geometry.graph import CurveGraph
 
 
 @dataclass(frozen=True)
@@ -29,15 +29,15 @@ class CurveSamples:
         return np.asarray(self.directions.any(axis=1))
 
 
-def curve_samples(nodes: Points, edges: Indices, count: int) -> CurveSamples:
-    """Return about so many places on a curve with nodes (v, 3) and edges (e, 2).
+def curve_samples(curve: CurveGraph, count: int) -> CurveSamples:
+    """Return about so many places on a curve.
 
     Each edge gets its share of them by length, at least one, evenly, its first
     vertex excluded and its last included. The direction is the edge's; at a
     vertex with two neighbours the tangent of the circle through the three; at a
     joint there is none.
     """
-    lengths = graph.edge_lengths(nodes, edges)
+    nodes, edges, lengths = curve.nodes, curve.edges, curve.lengths
     total = lengths.sum()
     shares = np.floor(count * lengths / total + 0.5) if total > 0 else np.zeros(len(edges))
     each = np.maximum(1, shares).astype(int)
@@ -49,8 +49,8 @@ def curve_samples(nodes: Points, edges: Indices, count: int) -> CurveSamples:
     between = nodes[first] + share[:, None] * (nodes[last] - nodes[first])
     points = np.where(at_vertex[:, None], nodes[last], between)
     directions = unit(nodes[last] - nodes[first])
-    tangents = vertex_tangents(nodes, edges)
-    turning = at_vertex & (graph.degrees(len(nodes), edges)[last] != 1)
+    tangents = vertex_tangents(curve)
+    turning = at_vertex & (curve.degrees[last] != 1)
     directions[turning] = tangents[last[turning]]
     return CurveSamples(np.ascontiguousarray(points), edge.astype(np.int32), directions)
 
@@ -61,14 +61,14 @@ def unit(vectors: Points) -> Points:
     return np.asarray(np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0))
 
 
-def vertex_tangents(nodes: Points, edges: Indices) -> Points:
+def vertex_tangents(curve: CurveGraph) -> Points:
     """Return (v, 3) the tangent of the circle through a vertex and its two neighbours, zero at other vertices.
 
     An inversion about the vertex maps the circle to the line through a / |a|^2
     and b / |b|^2, which is parallel to the tangent.
     """
-    tangents = np.zeros_like(nodes)
-    vertices, before, after = two_sided(nodes, edges)
+    tangents = np.zeros_like(curve.nodes)
+    vertices, before, after = two_sided(curve)
     inverse = [unit(side) / np.maximum(np.linalg.norm(side, axis=1), TINY)[:, None] for side in (before, after)]
     tangents[vertices] = unit(inverse[1] - inverse[0])
     return tangents
@@ -77,10 +77,11 @@ def vertex_tangents(nodes: Points, edges: Indices) -> Points:
 TINY = np.finfo(float).tiny
 
 
-def two_sided(nodes: Points, edges: Indices) -> tuple[Indices, Points, Points]:
+def two_sided(curve: CurveGraph) -> tuple[Indices, Points, Points]:
     """Return the vertices (d,) with exactly two neighbours, and the vectors (d, 3) to either."""
-    before, vertices, after = graph.passages(len(nodes), edges).T
-    return vertices, nodes[before] - nodes[vertices], nodes[after] - nodes[vertices]
+    before, vertices, after = curve.passages.T
+    here = curve.nodes[vertices]
+    return vertices, curve.nodes[before] - here, curve.nodes[after] - here
 
 
 def turns(before: Points, after: Points) -> Numbers:

@@ -1,60 +1,148 @@
-"""Plain graph questions about a skeleton: degrees, components, loops, branches, spurs."""
+"""Curve graphs: nodes with radii, joined by straight edges; skeletons, cone models and curves of other programs."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Mask, Numbers, Points
 
 
-def degrees(count: int, edges: Indices) -> Indices:
-    """Return (v,) the number of edges at each node."""
-    return np.bincount(edges.ravel(), minlength=count).astype(np.int32)
+@dataclass(frozen=True, eq=False)
+class CurveGraph:
+    """A graph in space; coordinates and radii in one unit.
+
+    Attributes
+    ----------
+    nodes : (v, 3) float64
+        Where the nodes are.
+    edges : (e, 2) int32
+        The two nodes of every edge, the lower first, each edge once.
+    radii : (v,) float64
+        How thick the body is about each node; NaN where that is not known.
+    bridged : (e,) bool
+        Which edges were laid over a gap; the others follow points.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel import CurveGraph
+    >>> y = CurveGraph(np.eye(4, 3), np.array([[0, 3], [1, 3], [2, 3]], np.int32))
+    >>> y.components, y.loops, y.ends, y.junctions
+    (1, 0, 3, 1)
+    >>> round(y.length, 6)
+    3.0
+    """
+
+    nodes: Points
+    edges: Indices
+    radii: Numbers = field(default_factory=lambda: np.zeros(0))
+    bridged: Mask = field(default_factory=lambda: np.zeros(0, np.bool_))
+
+    def __post_init__(self) -> None:
+        if len(self.radii) != len(self.nodes):
+            object.__setattr__(self, "radii", np.full(len(self.nodes), np.nan))
+        if len(self.bridged) != len(self.edges):
+            object.__setattr__(self, "bridged", np.zeros(len(self.edges), np.bool_))
+
+    @cached_property
+    def degrees(self) -> Indices:
+        """(v,) the number of edges at each node."""
+        return np.bincount(self.edges.ravel(), minlength=len(self.nodes)).astype(np.int32)
+
+    @cached_property
+    def components(self) -> int:
+        """The number of connected components."""
+        count = len(self.nodes)
+        ends = self.edges[:, 0], self.edges[:, 1]
+        adjacency = sparse.coo_array((np.ones(len(self.edges)), ends), shape=(count, count))
+        return int(connected_components(adjacency, directed=False)[0]) if count else 0
+
+    @property
+    def loops(self) -> int:
+        """The number of independent loops, e - v + components."""
+        return len(self.edges) - len(self.nodes) + self.components
+
+    @property
+    def ends(self) -> int:
+        """The number of nodes with one edge."""
+        return int((self.degrees == 1).sum())
+
+    @property
+    def junctions(self) -> int:
+        """The number of nodes with more than two edges."""
+        return int((self.degrees > 2).sum())
+
+    @cached_property
+    def lengths(self) -> Numbers:
+        """(e,) the length of every edge."""
+        return np.asarray(np.linalg.norm(self.nodes[self.edges[:, 0]] - self.nodes[self.edges[:, 1]], axis=1))
+
+    @property
+    def length(self) -> float:
+        """The length of all edges together."""
+        return float(self.lengths.sum())
+
+    @cached_property
+    def branches(self) -> tuple[Indices, ...]:
+        """The branches as ordered node lists.
+
+        A branch runs from junction or end to junction or end; a loop without a
+        junction repeats its first node at its end; an isolated node is a branch
+        of one.
+        """
+        return _branches(self.neighbours)
+
+    @cached_property
+    def neighbours(self) -> list[list[int]]:
+        """The neighbours of every node, ascending."""
+        around: list[list[int]] = [[] for _ in range(len(self.nodes))]
+        for a, b in self.edges.tolist():
+            around[a].append(b)
+            around[b].append(a)
+        return [sorted(others) for others in around]
+
+    @cached_property
+    def passages(self) -> Indices:
+        """(d, 3) one neighbour, the node, and the other neighbour, of every node with exactly two."""
+        found = [(o[0], node, o[1]) for node, o in enumerate(self.neighbours) if len(o) == 2]
+        return np.array(found, np.int32).reshape(-1, 3)
+
+    def counts(self) -> dict[str, float]:
+        """Return components, loops, ends, joints and length by name, as the documents have them."""
+        return {
+            "components": self.components,
+            "loops": self.loops,
+            "ends": self.ends,
+            "joints": self.junctions,
+            "length": self.length,
+        }
+
+    def without_spurs(self) -> Indices:
+        """Return (v,) for each node the one that takes its place: itself, or the junction its spur hangs on.
+
+        A spur is an end whose single edge leads to a junction and is shorter than
+        the junction's radius. The shortest goes first, and what is left is looked
+        at again: a junction of three that loses one edge is none any more.
+        """
+        into = np.arange(len(self.nodes), dtype=np.int32)
+        around = [set(others) for others in self.neighbours]
+        for e in np.argsort(self.lengths, kind="stable"):
+            for end, joint in (self.edges[e], self.edges[e][::-1]):
+                if len(around[end]) == 1 and len(around[joint]) > 2 and self.lengths[e] < self.radii[joint]:
+                    around[joint].discard(end)
+                    around[end].clear()
+                    into[end] = joint
+        return into
 
 
-def component_count(count: int, edges: Indices) -> int:
-    """Return the number of connected components."""
-    adjacency = sparse.coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
-    return int(connected_components(adjacency, directed=False)[0]) if count else 0
-
-
-def loop_count(count: int, edges: Indices) -> int:
-    """Return the number of independent loops, e - v + components."""
-    return len(edges) - count + component_count(count, edges)
-
-
-def edge_lengths(nodes: Points, edges: Indices) -> Numbers:
-    """Return (e,) the length of every edge."""
-    return np.asarray(np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1))
-
-
-def counts(nodes: Points, edges: Indices) -> dict[str, float]:
-    """Return components, loops, ends, joints and length by name."""
-    degree = degrees(len(nodes), edges)
-    return {
-        "components": component_count(len(nodes), edges),
-        "loops": loop_count(len(nodes), edges),
-        "ends": int((degree == 1).sum()),
-        "joints": int((degree > 2).sum()),
-        "length": float(edge_lengths(nodes, edges).sum()),
-    }
-
-
-def neighbour_lists(count: int, edges: Indices) -> list[list[int]]:
-    """Return the neighbours of every node, ascending."""
-    around: list[list[int]] = [[] for _ in range(count)]
-    for a, b in edges.tolist():
-        around[a].append(b)
-        around[b].append(a)
-    return [sorted(neighbours) for neighbours in around]
-
-
-def passages(count: int, edges: Indices) -> Indices:
-    """Return (d, 3) one neighbour, the node, and the other neighbour, of every node with exactly two."""
-    around = enumerate(neighbour_lists(count, edges))
-    return np.array([(o[0], node, o[1]) for node, o in around if len(o) == 2], np.int32).reshape(-1, 3)
+def tidy_edges(edges: Indices) -> Indices:
+    """Return edges with the lower node first, each once, none from a node to itself."""
+    ordered = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
+    return np.unique(ordered[ordered[:, 0] != ordered[:, 1]], axis=0).reshape(-1, 2)
 
 
 def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
@@ -64,17 +152,18 @@ def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
     return np.asarray(np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1))
 
 
-def branches(count: int, edges: Indices) -> tuple[Indices, ...]:
-    """Return the branches as ordered node lists.
+def connected_sets(count: int, links: Indices) -> list[Indices]:
+    """Return the connected sets of things 0 to count that links (l, 2) join, each ascending."""
+    graph = sparse.coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
+    sets, label = connected_components(graph, directed=False)
+    return [np.flatnonzero(label == number).astype(np.int32) for number in range(sets)]
 
-    A branch runs from joint or end to joint or end; a loop without a joint
-    repeats its first node at its end; an isolated node is a branch of one.
-    """
-    around = neighbour_lists(count, edges)
-    stops = [node for node in range(count) if len(around[node]) != 2]
+
+def _branches(around: list[list[int]]) -> tuple[Indices, ...]:
+    stops = [node for node in range(len(around)) if len(around[node]) != 2]
     used: set[tuple[int, int]] = set()
     found = [[node] for node in stops if not around[node]]
-    for start in [*stops, *range(count)]:  # what no stop reaches is a loop of its own
+    for start in [*stops, *range(len(around))]:  # what no stop reaches is a loop of its own
         for first in around[start]:
             if (start, first) not in used and (start in stops or not _visited(start, around, used)):
                 found.append(list(_walk(start, first, around, used)))
@@ -95,22 +184,3 @@ def _walk(start: int, first: int, around: list[list[int]], used: set[tuple[int, 
         if len(around[at]) != 2 or at == start:
             return
         previous, at = at, next(other for other in around[at] if other != previous)
-
-
-def without_spurs(nodes: Points, edges: Indices, radius: Numbers) -> Indices:
-    """Return for each node the one that takes its place: itself, or the joint its spur hangs on.
-
-    A spur is an end whose single edge leads to a joint and is shorter than the
-    joint's radius. The shortest goes first, and what is left is looked at again:
-    a joint of three that loses one edge is no joint any more.
-    """
-    into = np.arange(len(nodes), dtype=np.int32)
-    around = [set(neighbours) for neighbours in neighbour_lists(len(nodes), edges)]
-    ends, lengths = edges, edge_lengths(nodes, edges)
-    for e in np.argsort(lengths, kind="stable"):
-        for end, joint in (ends[e], ends[e][::-1]):
-            if len(around[end]) == 1 and len(around[joint]) > 2 and lengths[e] < radius[joint]:
-                around[joint].discard(end)
-                around[end].clear()
-                into[end] = joint
-    return into

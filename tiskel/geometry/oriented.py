@@ -29,7 +29,7 @@ PROBES = 500  # points that this is tried on
 
 
 @dataclass(frozen=True)
-class Surface:
+class OrientedCloud:
     """Oriented points.
 
     Attributes
@@ -83,7 +83,7 @@ class Surface:
         return np.asarray(self.winding_numbers(queries) > INSIDE)
 
 
-def oriented_surface(points: Points, targets: Points, seed: int = 0) -> Surface:
+def oriented_cloud(points: Points, targets: Points, seed: int = 0) -> OrientedCloud:
     """Return the surface of a cloud (n, 3) of distinct points; targets (n, 3) is where each contracts to."""
     neighbours, _, rings = surroundings(points, published_neighbours(len(points)))
     near = np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS])
@@ -95,13 +95,13 @@ def oriented_surface(points: Points, targets: Points, seed: int = 0) -> Surface:
     votes = np.bincount(part, areas * outward * sign)
     by_propagation = sign * np.where(votes < 0, -1.0, 1.0)[part]
     made = [
-        checked(Surface(points, normals * sign[:, None], areas, name), seed)
+        checked(OrientedCloud(points, normals * sign[:, None], areas, name), seed)
         for name, sign in (("skeleton", by_skeleton), ("propagation", by_propagation))
     ]
     return max(made, key=lambda surface: surface.consistency)
 
 
-def checked(surface: Surface, seed: int) -> Surface:
+def checked(surface: OrientedCloud, seed: int) -> OrientedCloud:
     """Return the surface with the share of probed points that have an inside behind them and an outside before them.
 
     One spacing away, or two where that is better: noise reaches further than

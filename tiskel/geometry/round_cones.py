@@ -5,29 +5,27 @@ graph is the shape's curve skeleton, and the union's surface is what a scanner
 would see of it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.geometry.graph import CurveGraph
 
 BATCH = 200_000  # candidates per round: bounds the memory, not the result
 
 
-@dataclass(frozen=True)
-class ConeGraph:
-    """A union of round cones.
+@dataclass(frozen=True, eq=False)
+class ConeGraph(CurveGraph):
+    """A union of round cones: every edge is one.
 
     Attributes
     ----------
-    nodes : (v, 3); radii : (v,); edges : (e, 2).
-    open_ends : nodes whose ball leaves no surface, so that the tube is open there.
+    open_ends : tuple of int
+        Nodes whose ball leaves no surface, so that the tube is open there.
     """
 
-    nodes: Points
-    radii: Numbers
-    edges: Indices
-    open_ends: tuple[int, ...] = ()
+    open_ends: tuple[int, ...] = field(default=(), kw_only=True)
 
 
 def signed_distance(points: Points, shape: ConeGraph, edge: int) -> Numbers:

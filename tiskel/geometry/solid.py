@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from tiskel.arrays import Numbers, Points
-from tiskel.geometry.oriented import Surface, checked
+from tiskel.geometry.oriented import OrientedCloud, checked
 
 LEVELS = (0.25, 0.3, 0.4)  # winding numbers; noise outside stays below, tubes of one spacing's radius rise above
 STEP = 1.2  # of the grid, in spacings
@@ -26,23 +26,34 @@ PROBED = 16384  # points; of larger clouds so many are taken
 Grid = npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class Body:
-    """Whether there is an inside to speak of, and how many handles it has, None where they cannot be told."""
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """What an oriented cloud encloses.
 
+    Attributes
+    ----------
+    oriented : OrientedCloud
+        The cloud.
+    trusted : bool
+        Whether there is an inside to speak of.
+    handles : int or None
+        How many there are, None where they cannot be told.
+    """
+
+    oriented: OrientedCloud
     trusted: bool
     handles: int | None
 
 
-def body_of(surface: Surface) -> Body:
-    """Return the body inside a surface."""
+def solid_of(surface: OrientedCloud) -> Solid:
+    """Return the solid inside an oriented cloud; of a large one, what a part of its points says."""
     step = -(-len(surface.points) // PROBED)
     points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
-    thinned = checked(Surface(points, normals, step * surface.areas[::step]), seed=0)
-    return Body(thinned.trusted, solid_loops(thinned)[0])
+    thinned = checked(OrientedCloud(points, normals, step * surface.areas[::step]), seed=0)
+    return Solid(surface, thinned.trusted, solid_handles(thinned)[0])
 
 
-def solid_loops(surface: Surface) -> tuple[int | None, str]:
+def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
     """Return the handles of the solid inside a surface, or None and why they cannot be told."""
     if not surface.trusted:
         share = f"{surface.consistency:.0%}"
@@ -65,7 +76,7 @@ def _grid_step(extent: Points, spacing: float) -> float:
     return step * float(np.cbrt(max(1.0, cells / MAX_CELLS)))
 
 
-def _winding_grid(surface: Surface, low: Points, high: Points, step: float) -> Numbers:
+def _winding_grid(surface: OrientedCloud, low: Points, high: Points, step: float) -> Numbers:
     """Return winding numbers on a grid: at every eighth place, and at all places where it matters.
 
     These are the ones near the surface, and those between an inside and an

@@ -2,14 +2,14 @@
 
 import io
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Indices, Points
 from tiskel.errors import TiskelError
+from tiskel.geometry.graph import CurveGraph
 from tiskel.io import ply
 from tiskel.io.clouds import TEXT_FORMATS, parse_cloud
 from tiskel.io.stages.skeleton import parse_skeleton
@@ -19,13 +19,17 @@ from tiskel.io.streams import STANDARD, read_bytes
 FORMATS = (".ply", ".obj", ".swc", ".graphml", ".json", *TEXT_FORMATS, ".npy", ".npz")
 
 
-@dataclass(frozen=True)
-class Curve:
-    """A curve as it was read: nodes (v, 3) in the file's units, edges (e, 2) int32 by place in nodes."""
+@dataclass(frozen=True, eq=False)
+class Curve(CurveGraph):
+    """A curve as it was read, in the file's units; see :class:`tiskel.CurveGraph`.
 
-    nodes: Points
-    edges: Indices
-    name: str = ""
+    Attributes
+    ----------
+    name : str
+        The file's name without folders; "stdin" for standard input.
+    """
+
+    name: str = field(default="", kw_only=True)
 
 
 def load_curve(source: str | Path) -> Curve:
@@ -55,7 +59,7 @@ def parse_curve(data: bytes, source: str | Path) -> Curve:
         raise TiskelError(f"{name} is not a valid {kind[1:].upper()} curve: {error}; export it again") from None
     if len(links) and (links.min() < 0 or links.max() >= len(places)):
         raise TiskelError(f"{name}: an edge names node {links.max()}, there are {len(places)}; export it again")
-    return Curve(places, links.astype(np.int32), name)
+    return Curve(places, links.astype(np.int32), name=name)
 
 
 def _kind(data: bytes) -> str:

@@ -8,7 +8,6 @@ from collections.abc import Callable
 import numpy as np
 
 import tiskel
-from tiskel.geometry import graph
 from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.skeleton import Skeleton
 
@@ -55,7 +54,7 @@ def to_swc(s: Skeleton) -> bytes:
 
 def spanning_forest(s: Skeleton) -> tuple[list[int], dict[int, int]]:
     """Return nodes in breadth-first order and the parent of each, -1 for roots; ends are preferred as roots."""
-    around = graph.neighbour_lists(len(s.nodes), s.edges)
+    around = s.neighbours
     order: list[int] = []
     parent: dict[int, int] = {}
     for root in np.argsort(s.degrees != 1, kind="stable").tolist():

@@ -15,6 +15,7 @@ from tiskel.errors import TiskelError
 
 Columns = Mapping[str, npt.NDArray[Any]]
 MAGIC = b"ply"
+FORMAT = 2  #: of the stage files; 1 is still read
 SMALLEST_ROW = 1  # byte; no element of a binary file can hold more rows than the file has bytes
 
 
@@ -73,7 +74,8 @@ def ragged(rows: Sequence[npt.NDArray[np.int32]]) -> npt.NDArray[Any]:
 def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -> bytes:
     """Return a binary little-endian file; facts become comment lines of JSON."""
     comments = [f"tiskel {tiskel.__version__} {stage}"]
-    comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in facts.items()]
+    everything = {"format": FORMAT, **facts}
+    comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in everything.items()]
     out = io.BytesIO()
     PlyData(elements, text=False, byte_order="<", comments=comments).write(out)
     return out.getvalue()
@@ -93,6 +95,9 @@ def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
                 found_facts[key] = json.loads(value)
             except json.JSONDecodeError:
                 continue
+    number = found_facts.get("format", 1)
+    if not isinstance(number, int) or number > FORMAT:
+        raise TiskelError(f"{name} has format {number} of a newer tiskel, this one reads up to {FORMAT}; update tiskel")
     return found_facts
 
 

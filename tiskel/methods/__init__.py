@@ -1,1 +1,41 @@
-"""Ways from a cloud to a curve skeleton, one room each."""
+"""Methods: ways from a cloud to a curve skeleton, each behind the same two functions.
+
+``contract(points, params, weights) -> Trace`` and ``curve(trace, params) ->
+MethodCurve``, both in normalised coordinates; checks and units are the two
+stages' (:mod:`tiskel.contraction`, :mod:`tiskel.skeleton`). What a method does
+not read, its settings do not have.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from tiskel.arrays import Numbers, Points
+from tiskel.methods import robust
+from tiskel.methods.laplacian.curve import curve as published_curve
+from tiskel.methods.laplacian.gls import contract_gls
+from tiskel.methods.laplacian.lbc import contract_lbc
+from tiskel.methods.trace import MethodCurve, Trace
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method's two functions.
+
+    Attributes
+    ----------
+    contract : callable
+        Points (n, 3), the method's params and weights (n,) or None, to a Trace.
+    curve : callable
+        A Trace and the method's params, to a MethodCurve.
+    """
+
+    contract: Callable[[Points, Any, Numbers | None], Trace]
+    curve: Callable[[Trace, Any], MethodCurve]
+
+
+METHODS: dict[str, Method] = {
+    "robust": Method(robust.contract, robust.curve),
+    "gls": Method(contract_gls, published_curve),
+    "lbc": Method(contract_lbc, published_curve),
+}

@@ -1,17 +1,25 @@
-"""What a contraction loop records while it runs."""
+"""What goes into a method and what comes out: the contract of its two functions."""
 
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
-from tiskel.arrays import Indices, Points
+import numpy as np
+
+from tiskel.arrays import Indices, Points, resolved
+from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.rings import Rings
 
 
 class Status(str, Enum):
-    """Why a contraction stopped."""
+    """Why a contraction stopped.
+
+    Examples
+    --------
+    >>> from tiskel import Status
+    >>> Status("step limit").advice
+    'the step limit was reached before the stopping rule was met; raise max_steps'
+    """
 
     CONVERGED = "converged"
     COMPLETE = "complete"
@@ -40,11 +48,18 @@ class StepRecord:
 
     Attributes
     ----------
-    contraction_weight : W_L of the step; 0 for robust, which has none.
-    ring_ratio : summed ring sizes after the solve, over the summed first ring sizes of the same points.
-    score, score_change : explained score of the contracted cloud, and the quantity that theta is held against (gls).
-    points : points left after the step.
-    seconds : wall time per part.
+    contraction_weight : float
+        W_L of the step; 0 for robust, which has none.
+    ring_ratio : float
+        Summed ring sizes after the solve, over the summed first ring sizes of the same points.
+    score : float or None
+        Explained score of the contracted cloud (gls).
+    score_change : float or None
+        The quantity that theta is held against (gls).
+    points : int
+        Points left after the step.
+    seconds : dict
+        Wall time per part; no part of a comparison, nor of a file.
     """
 
     contraction_weight: float
@@ -55,41 +70,104 @@ class StepRecord:
     seconds: dict[str, float] = field(compare=False)
 
 
-@dataclass(frozen=True)
-class Trace:
-    """What a contraction loop returns, in normalised coordinates; rows are those of the cloud it was given.
+@dataclass(frozen=True, eq=False)
+class Sections:
+    """What a front found: the connected pieces of each bin of geodesic distance, a Reeb graph's level sets.
 
     Attributes
     ----------
-    points : (m, 3) contracted.
-    rows : (m,) rows of the points that are left.
-    rings : of these points, by their place in ``rows``.
-    merged_into, merged_step : (n,) row that each removed point was merged into, and the step, from 1; -1 elsewhere.
-    history : positions of the points left after each step, with their rows.
-    sections, levels : (n,) by robust, see :class:`tiskel.Contraction`.
+    section : (n,) int32
+        The section of every point, numbered along the front; -1 in small components.
+    level : (n,) int32
+        The bin of the front at every point; -1 in small components.
     """
 
+    section: Indices
+    level: Indices
+
+    @property
+    def count(self) -> int:
+        """The number of sections."""
+        return int(self.section.max(initial=-1)) + 1
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """What the first function of a method, ``contract``, returns and its second, ``curve``, takes.
+
+    In normalised coordinates; rows are those of the cloud.
+
+    Attributes
+    ----------
+    cloud : (n, 3) float64
+        The cloud that was contracted.
+    points : (m, 3) float64
+        The points that are left, contracted.
+    rows : (m,) int32
+        Their rows in the cloud.
+    merged_into : (n,) int32
+        The row that each removed point was merged into; -1 elsewhere.
+    merged_step : (n,) int32
+        The step of that, from 1; -1 elsewhere.
+    history : tuple
+        The rows and positions of the points left after each step.
+    steps : tuple of StepRecord
+        One for each accepted step.
+    status : Status
+        Why the contraction stopped.
+    rings : Rings or None
+        One-rings of the points that are left, by place in ``rows``; None from methods without.
+    sections : Sections or None
+        What the last front found, a row for each of ``rows``; None from methods without fronts.
+    prepared : object
+        What the method worked out about the cloud and would work out again; never in a file.
+    ring_seconds : float
+        Wall time of neighbours and rings.
+    """
+
+    cloud: Points
     points: Points
     rows: Indices
-    rings: Rings
     merged_into: Indices
     merged_step: Indices
     history: tuple[tuple[Indices, Points], ...]
     steps: tuple[StepRecord, ...]
     status: Status
-    ring_seconds: float
-    sections: Indices | None = None
-    levels: Indices | None = None
+    rings: Rings | None = None
+    sections: Sections | None = None
+    prepared: Any = None
+    ring_seconds: float = 0.0
+
+    def survivor_of(self) -> Indices:
+        """Return (n,), for each point of the cloud the place in ``points`` of the one it ended up in."""
+        return survivors(self.rows, self.merged_into)
 
 
-class Stopwatch:
-    """Collect wall time by part; measured times never reach a result file."""
+def survivors(rows: Indices, merged_into: Indices) -> Indices:
+    """Return (n,), for each point of a cloud the place in rows (m,) of the one it was merged into in the end."""
+    everyone = np.arange(len(merged_into), dtype=np.int32)
+    place = np.full(len(merged_into), -1, np.int32)
+    place[rows] = np.arange(len(rows), dtype=np.int32)
+    return place[resolved(np.where(merged_into < 0, everyone, merged_into))]
 
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
 
-    @contextmanager
-    def measure(self, part: str) -> Iterator[None]:
-        start = time.perf_counter()
-        yield
-        self.seconds[part] = self.seconds.get(part, 0.0) + time.perf_counter() - start
+@dataclass(frozen=True, eq=False)
+class MethodCurve:
+    """What the second function of a method, ``curve``, returns, in normalised coordinates.
+
+    Attributes
+    ----------
+    graph : CurveGraph
+        The curve.
+    node_of_point : (n,) int32
+        The node of every point of the cloud.
+    contracted : (m, 3) float64
+        The contracted points that the curve stands on, in the order of the trace's.
+    warnings : tuple of str
+        Where the curve may be wrong, and why.
+    """
+
+    graph: CurveGraph
+    node_of_point: Indices
+    contracted: Points
+    warnings: tuple[str, ...] = ()

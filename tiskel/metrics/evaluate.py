@@ -6,10 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Mask, Points
-from tiskel.geometry import graph
+from tiskel.errors import TiskelError
 from tiskel.geometry.curve import CurveSamples, curve_samples
-from tiskel.geometry.oriented import Surface, oriented_surface
-from tiskel.methods.trace import Stopwatch
+from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
 from tiskel.metrics import smoothness
 from tiskel.metrics.barcode import Barcode, barcode
 from tiskel.metrics.boundedness import Boundedness, boundedness
@@ -19,10 +19,12 @@ from tiskel.metrics.result import CurveQuality, PointQuality, Quality
 from tiskel.metrics.subject import Subject, make_subject
 from tiskel.metrics.topology import Topology, compare_topology
 from tiskel.params import MetricParams
+from tiskel.skeleton import Skeleton
+from tiskel.timing import Stopwatch
 
 
 def evaluate(
-    cloud: npt.ArrayLike,
+    cloud: npt.ArrayLike | Skeleton,
     points: npt.ArrayLike | None = None,
     nodes: npt.ArrayLike | None = None,
     edges: npt.ArrayLike | None = None,
@@ -40,23 +42,51 @@ def evaluate(
 
     Parameters
     ----------
-    cloud : (n, 3), in any unit; rows that are not finite are dropped, duplicates counted once.
-    points : (m, 3) skeletal (contracted) points, or None.
-    nodes, edges : (v, 3) and (e, 2) of the curve skeleton, or None.
-    origin : (m, 3), where the skeletal points came from. Without it they belong to the rows of the cloud where
-        there are as many, else to the nearest point of the cloud; the result says which.
+    cloud : (n, 3) array_like, or Skeleton
+        In any unit; rows that are not finite are dropped, duplicates counted once. A skeleton brings its cloud,
+        contracted points and curve along.
+    points : (m, 3) array_like, optional
+        Skeletal (contracted) points.
+    nodes, edges : (v, 3) and (e, 2) array_like, optional
+        The curve skeleton.
+    origin : (m, 3) array_like, optional
+        Where the skeletal points came from. Without it they belong to the rows of the cloud where there are as
+        many, else to the nearest point of the cloud; the result says which.
+    params : MetricParams, optional
+        The settings.
+
+    Returns
+    -------
+    Quality
 
     Raises
     ------
     TiskelError
-        for a cloud without a body (few points, a line, a plane), numbers of rows that do not match, edges to nodes
+        For a cloud without a body (few points, a line, a plane), numbers of rows that do not match, edges to nodes
         that are not there.
+
+    Examples
+    --------
+    >>> from tiskel import evaluate, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("torus"))
+    >>> quality = evaluate(true)
+    >>> quality.loops.solid, quality.loops.graph
+    (1, 1)
+    >>> round(quality.as_dict()["inside"]["curve"], 2)
+    1.0
     """
     params = params or MetricParams()
+    if isinstance(cloud, Skeleton):
+        if points is not None or nodes is not None or edges is not None or origin is not None:
+            raise TiskelError("a skeleton brings points, nodes, edges and origin along; leave them out, or give arrays")
+        s = cloud
+        some = len(s.contracted) > 0
+        cloud, points, origin = s.cloud, s.contracted if some else None, s.origin if some else None
+        nodes, edges = s.nodes, s.edges
     subject = make_subject(cloud, points, nodes, edges, origin, params.normalise)
     watch = Stopwatch()
     with watch.measure("inside"):
-        surface = oriented_surface(subject.cloud, subject.targets, params.seed)
+        surface = oriented_cloud(subject.cloud, subject.targets, params.seed)
     topology, loops = _topology_and_loops(subject, surface, params, watch)
     of_points, of_curve = _measures(subject, surface, params, watch)
     return Quality(
@@ -77,7 +107,7 @@ def evaluate(
 
 
 def _topology_and_loops(
-    subject: Subject, surface: Surface, params: MetricParams, watch: Stopwatch
+    subject: Subject, surface: OrientedCloud, params: MetricParams, watch: Stopwatch
 ) -> tuple[Topology | None, Loops]:
     """Return both, from one barcode where the skeletal points stand for the whole cloud."""
     with watch.measure("loops"):
@@ -89,14 +119,14 @@ def _topology_and_loops(
     return topology, loops
 
 
-def _loop_part(subject: Subject, surface: Surface, params: MetricParams) -> Surface:
+def _loop_part(subject: Subject, surface: OrientedCloud, params: MetricParams) -> OrientedCloud:
     """Return the surface, or that of a random subset of a large cloud."""
     if len(subject.cloud) <= params.loop_points:
         return surface
     rows = np.random.default_rng(params.seed).choice(len(subject.cloud), params.loop_points, replace=False)
     rows.sort()
     thinned = np.ascontiguousarray(subject.cloud[rows])
-    return oriented_surface(thinned, subject.targets[rows], params.seed)
+    return oriented_cloud(thinned, subject.targets[rows], params.seed)
 
 
 def _topology(subject: Subject, known: Points, bars: Barcode, params: MetricParams) -> Topology | None:
@@ -108,10 +138,10 @@ def _topology(subject: Subject, known: Points, bars: Barcode, params: MetricPara
 
 
 def _measures(
-    subject: Subject, surface: Surface, params: MetricParams, watch: Stopwatch
+    subject: Subject, surface: OrientedCloud, params: MetricParams, watch: Stopwatch
 ) -> tuple[PointQuality | None, CurveQuality | None]:
     """Return the measures of points and of the curve; how places are surrounded is asked for all of them at once."""
-    samples = curve_samples(subject.nodes, subject.edges, params.curve_samples)
+    samples = curve_samples(subject.curve, params.curve_samples)
     places = np.concatenate([subject.points, samples.points])
     with watch.measure("boundedness"):
         bounded = boundedness(places, subject.cloud)
@@ -121,7 +151,7 @@ def _measures(
     surrounded = [(bounded.take(rows), None if inside is None else inside[rows]) for rows in (of_points, of_curve)]
     return (
         _point_quality(subject, surrounded[0], params, watch) if len(subject.points) else None,
-        _curve_quality(subject, samples, surrounded[1], params, watch) if len(subject.edges) else None,
+        _curve_quality(subject, samples, surrounded[1], params, watch) if len(subject.curve.edges) else None,
     )
 
 
@@ -149,16 +179,16 @@ def _point_quality(subject: Subject, surrounded: Surrounded, params: MetricParam
 def _curve_quality(
     subject: Subject, samples: CurveSamples, surrounded: Surrounded, params: MetricParams, watch: Stopwatch
 ) -> CurveQuality:
-    nodes, edges, frame = subject.nodes, subject.edges, subject.frame
+    curve, frame = subject.curve, subject.frame
     bounded, inside = surrounded
     with watch.measure("centredness"):
         sections = curve_centredness(samples, subject.cloud, params)
     with watch.measure("smoothness"):
-        vertices, smooth = smoothness.vertex_smoothness(nodes, edges)
-        overall = smoothness.curve_smoothness(nodes, edges)
+        vertices, smooth = smoothness.vertex_smoothness(curve)
+        overall = smoothness.curve_smoothness(curve)
     return CurveQuality(
-        nodes=frame.undo(nodes),
-        edges=edges,
+        nodes=frame.undo(curve.nodes),
+        edges=curve.edges,
         samples=replace(samples, points=frame.undo(samples.points)),
         boundedness=bounded,
         inside=inside,
@@ -167,10 +197,11 @@ def _curve_quality(
         vertices=vertices,
         smoothness=smooth,
         overall_smoothness=overall,
-        hairpins=smoothness.hairpins(nodes, edges),
+        hairpins=smoothness.hairpins(curve),
     )
 
 
 def _graph_counts(subject: Subject) -> dict[str, float] | None:
     """Return what the curve is made of; its length in the input's units."""
-    return graph.counts(subject.frame.undo(subject.nodes), subject.edges) if subject.curve_given else None
+    curve = subject.curve
+    return CurveGraph(subject.frame.undo(curve.nodes), curve.edges).counts() if subject.curve_given else None

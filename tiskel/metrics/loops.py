@@ -15,9 +15,8 @@ them than its surface has loops is not decided: each handle is one of those.
 from dataclasses import dataclass
 
 from tiskel.arrays import Numbers
-from tiskel.geometry import graph
-from tiskel.geometry.oriented import Surface
-from tiskel.geometry.solid import solid_loops
+from tiskel.geometry.oriented import OrientedCloud
+from tiskel.geometry.solid import solid_handles
 from tiskel.metrics.subject import Subject
 from tiskel.params import MetricParams
 
@@ -43,15 +42,15 @@ class Loops:
     reasons: dict[str, str]
 
 
-def count_loops(bars: Numbers, surface: Surface, subject: Subject, params: MetricParams) -> Loops:
+def count_loops(bars: Numbers, surface: OrientedCloud, subject: Subject, params: MetricParams) -> Loops:
     """Count the loops of a surface with bars (b, 2) in H1, of the solid inside it, and of the subject's curve."""
     lasting = int((bars[:, 1] >= params.loop_ratio * bars[:, 0]).sum())
-    solid, reason = solid_loops(surface)
+    solid, reason = solid_handles(surface)
     if solid is not None and solid > lasting:  # every handle of the solid is a loop of its surface, too
         reason = f"{solid} handles, but only {lasting} loops of the surface last; the cloud is too sparse for its tubes"
         solid = None
     reasons = {"solid": reason} if reason else {}
-    curve = graph.loop_count(len(subject.nodes), subject.edges) if subject.curve_given else None
+    curve = subject.curve.loops if subject.curve_given else None
     if curve is None:
         reasons["graph"] = "no curve was given"
     return Loops(lasting, solid, curve, bars, len(surface.points), reasons)

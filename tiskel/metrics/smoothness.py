@@ -3,8 +3,8 @@
 import numpy as np
 
 from tiskel.arrays import Indices, Numbers, Points
-from tiskel.geometry import graph
 from tiskel.geometry.curve import turns, two_sided
+from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.params import MetricParams
 
@@ -40,31 +40,31 @@ def point_smoothness(points: Points, params: MetricParams) -> Numbers:
     return np.asarray(np.abs(1 - 2 * np.arccos(np.clip(cosine, -1, 1)) / np.pi).min(axis=1))
 
 
-def vertex_smoothness(nodes: Points, edges: Indices) -> tuple[Indices, Numbers]:
+def vertex_smoothness(curve: CurveGraph) -> tuple[Indices, Numbers]:
     """Return the vertices (d,) with two neighbours and their s = |1 - 2 D_n|; NaN beside an edge without length.
 
     By this formula a hairpin scores 1, like a straight line, and a right angle
     0; see :func:`hairpins`.
     """
-    vertices, before, after = two_sided(nodes, edges)
+    vertices, before, after = two_sided(curve)
     return vertices, np.abs(1 - 2 * turns(before, after))
 
 
-def curve_smoothness(nodes: Points, edges: Indices) -> float | None:
+def curve_smoothness(curve: CurveGraph) -> float | None:
     """Return 1 - sum w_i (1 - s_i) / W of a curve; w_i half the length of a vertex's two edges, W the total length.
 
     None for a curve without length.
     """
-    total = float(graph.edge_lengths(nodes, edges).sum())
+    total = curve.length
     if total == 0:
         return None
-    _, before, after = two_sided(nodes, edges)
+    _, before, after = two_sided(curve)
     weight = (np.linalg.norm(before, axis=1) + np.linalg.norm(after, axis=1)) / 2
-    _, s = vertex_smoothness(nodes, edges)
+    _, s = vertex_smoothness(curve)
     return float(1 - np.nansum(weight * (1 - s)) / total)
 
 
-def hairpins(nodes: Points, edges: Indices) -> int:
+def hairpins(curve: CurveGraph) -> int:
     """Return the number of vertices where a curve turns back by more than a right angle."""
-    _, before, after = two_sided(nodes, edges)
+    _, before, after = two_sided(curve)
     return int((turns(before, after) < HAIRPIN).sum())

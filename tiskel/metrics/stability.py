@@ -23,7 +23,7 @@ from tiskel.arrays import Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
-from tiskel.geometry.oriented import Surface, oriented_surface
+from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
 from tiskel.metrics.boundedness import outside_hull
 from tiskel.params import StabilityParams
 
@@ -121,9 +121,11 @@ def assess_stability(contraction: Contraction, params: StabilityParams | None = 
     """
     params = params or StabilityParams()
     c = contraction
+    if len(c.history) == 0 and len(c.steps):
+        raise TiskelError("the contraction file holds no history; write it with: tiskel contract --history")
     if len(c.history) == 0 or len(c.points) == 0:
         raise TiskelError(f"the contraction kept {len(c.history)} steps; there is nothing to compare")
-    surface = oriented_surface(*_surface_arguments(c))
+    surface = oriented_cloud(*_surface_arguments(c))
     outward = c.origin - c.points
     normals, curvature = oriented_normals(c.origin, outward, params.neighbours)
     signs = np.random.default_rng(params.seed).integers(2, size=len(c.origin))
@@ -155,7 +157,7 @@ def oriented_normals(points: Points, outward: Points, neighbours: int) -> tuple[
     return normals * sign[:, None], np.divide(values[:, 2], total, out=np.zeros(len(points)), where=total > 0)
 
 
-def _containment(points: Points, before: Points, surface: Surface) -> tuple[float, float | None]:
+def _containment(points: Points, before: Points, surface: OrientedCloud) -> tuple[float, float | None]:
     """Return the shares of points in the convex hull of the step before, and inside the original cloud."""
     inside = float(surface.contains(points).mean()) if surface.trusted else None
     return float((~outside_hull(points, before)).mean()), inside

@@ -19,6 +19,7 @@ from tiskel.arrays import (
 )
 from tiskel.errors import TiskelError
 from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.graph import CurveGraph, tidy_edges
 from tiskel.params import Normalisation
 
 TARGET_SAMPLES = 1000  # places on a curve that a cloud may contract to
@@ -34,7 +35,7 @@ class Subject:
     cloud : (n, 3), finite and distinct.
     points, originals : (m, 3), skeletal points and the points of the cloud they stand for; no row where none are given.
     correspondence : "given", "rows" (as many points as the cloud has, row by row) or "nearest".
-    nodes, edges : (v, 3) and (e, 2) of the curve; no row where none is given.
+    curve : without nodes where none is given.
     curve_given : whether one is, be it empty.
     frame : how to get back to the input's units.
     warnings : what was left out on the way in.
@@ -44,8 +45,7 @@ class Subject:
     points: Points
     originals: Points
     correspondence: str
-    nodes: Points
-    edges: Indices
+    curve: CurveGraph
     curve_given: bool
     frame: Frame
     warnings: tuple[str, ...]
@@ -59,8 +59,8 @@ class Subject:
         """
         if len(self.points):
             return np.asarray(self.points[cKDTree(self.originals).query(self.cloud)[1]])
-        along = curve_samples(self.nodes, self.edges, TARGET_SAMPLES).points
-        places = np.concatenate([self.nodes, along]) if len(self.nodes) else self.cloud.mean(axis=0)[None]
+        nodes, along = self.curve.nodes, curve_samples(self.curve, TARGET_SAMPLES).points
+        places = np.concatenate([nodes, along]) if len(nodes) else self.cloud.mean(axis=0)[None]
         return np.asarray(places[cKDTree(places).query(self.cloud)[1]])
 
 
@@ -86,8 +86,7 @@ def make_subject(
         points=frame.apply(skeletal),
         originals=frame.apply(originals),
         correspondence=correspondence,
-        nodes=frame.apply(vertices),
-        edges=links,
+        curve=CurveGraph(frame.apply(vertices), links),
         curve_given=nodes is not None,
         frame=frame,
         warnings=tuple(warnings),
@@ -124,8 +123,7 @@ def _curve(nodes: npt.ArrayLike | None, edges: npt.ArrayLike | None, warnings: l
     given = np.zeros((0, 2), np.int32) if edges is None else np.asarray(edges, np.int64).reshape(-1, 2)
     if len(given) and (given.min() < 0 or given.max() >= len(vertices)):
         raise TiskelError(f"an edge names node {given.max()}, the curve has {len(vertices)}; count nodes from 0")
-    links = np.unique(np.sort(given, axis=1), axis=0)
-    links = links[links[:, 0] != links[:, 1]].astype(np.int32)
+    links = tidy_edges(given.astype(np.int32))
     if len(links) < len(given):
         warnings.append(f"{len(given) - len(links)} edges of the curve were repeats or led nowhere and are left out")
     return vertices, links

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points
-from tiskel.geometry import graph
+from tiskel.arrays import Numbers, Points
 from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.round_cones import ConeGraph
 
 SAMPLES = 2000  # places on each curve
@@ -46,13 +46,13 @@ class Agreement:
         return asdict(self)
 
 
-def agreement(nodes: Points, edges: Indices, truth: ConeGraph) -> Agreement:
-    """Compare a found curve with nodes (v, 3) and edges (e, 2) with the graph of a shape, in the shape's units."""
-    matched, true_ends, found_ends = matched_ends(nodes, edges, truth)
-    forth, back = _distances(nodes, edges, truth)
+def agreement(curve: CurveGraph, truth: ConeGraph) -> Agreement:
+    """Compare a found curve with the graph of a shape, in the shape's units."""
+    matched, true_ends, found_ends = matched_ends(curve, truth)
+    forth, back = _distances(curve, truth)
     return Agreement(
-        components=graph.component_count(len(nodes), edges) - graph.component_count(len(truth.nodes), truth.edges),
-        loops=graph.loop_count(len(nodes), edges) - graph.loop_count(len(truth.nodes), truth.edges),
+        components=curve.components - truth.components,
+        loops=curve.loops - truth.loops,
         true_ends=true_ends,
         ends=matched,
         spurious_ends=found_ends - matched,
@@ -63,23 +63,22 @@ def agreement(nodes: Points, edges: Indices, truth: ConeGraph) -> Agreement:
     )
 
 
-def matched_ends(nodes: Points, edges: Indices, truth: ConeGraph) -> tuple[int, int, int]:
+def matched_ends(curve: CurveGraph, truth: ConeGraph) -> tuple[int, int, int]:
     """Return how many true ends have a found end of their own within one radius, and how many of either there are."""
-    true = np.flatnonzero(graph.degrees(len(truth.nodes), truth.edges) == 1)
-    found = np.flatnonzero(graph.degrees(len(nodes), edges) == 1) if len(nodes) else np.zeros(0, int)
+    true, found = np.flatnonzero(truth.degrees == 1), np.flatnonzero(curve.degrees == 1)
     if len(true) == 0 or len(found) == 0:
         return 0, len(true), len(found)
-    apart = np.linalg.norm(truth.nodes[true][:, None] - nodes[found], axis=2) / truth.radii[true][:, None]
+    apart = np.linalg.norm(truth.nodes[true][:, None] - curve.nodes[found], axis=2) / truth.radii[true][:, None]
     cost = np.where(apart <= 1, apart, FAR)
     rows, columns = linear_sum_assignment(cost)
     return int((cost[rows, columns] <= 1).sum()), len(true), len(found)
 
 
-def _distances(nodes: Points, edges: Indices, truth: ConeGraph) -> tuple[Numbers, Numbers]:
+def _distances(curve: CurveGraph, truth: ConeGraph) -> tuple[Numbers, Numbers]:
     """Return distances from places on the found curve to the true one, and back, in radii of the true one there."""
-    if len(nodes) == 0:
+    if len(curve.nodes) == 0:
         return np.zeros(0), np.zeros(0)
-    found = np.concatenate([nodes, curve_samples(nodes, edges, SAMPLES).points])
+    found = np.concatenate([curve.nodes, curve_samples(curve, SAMPLES).points])
     true, radii = true_places(truth)
     forth, nearest = cKDTree(true).query(found)
     back = cKDTree(found).query(true)[0]
@@ -88,7 +87,7 @@ def _distances(nodes: Points, edges: Indices, truth: ConeGraph) -> tuple[Numbers
 
 def true_places(truth: ConeGraph) -> tuple[Points, Numbers]:
     """Return places (p, 3) along the axes of a shape, and the radii (p,) there."""
-    samples = curve_samples(truth.nodes, truth.edges, SAMPLES)
+    samples = curve_samples(truth, SAMPLES)
     first, last = truth.edges[samples.edges].T
     length = np.linalg.norm(truth.nodes[last] - truth.nodes[first], axis=1)
     share = np.linalg.norm(samples.points - truth.nodes[first], axis=1) / length

@@ -6,14 +6,21 @@ marked [T] are those of the published MATLAB toolboxes, which produced the
 published tables.
 """
 
-from tiskel.params.contraction import (
+from tiskel.params.methods import (
     MIN_POINTS,
     SIDE,
     ContractionParams,
+    GlsParams,
+    LaplacianParams,
+    LbcParams,
     Method,
     Normalisation,
+    RobustParams,
     Solver,
+    known_settings,
+    params_class,
     published_neighbours,
+    settings_of,
 )
 from tiskel.params.metrics import Bars, MetricParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
@@ -26,12 +33,16 @@ __all__ = [
     "SIDE",
     "Bars",
     "ContractionParams",
+    "GlsParams",
+    "LaplacianParams",
+    "LbcParams",
     "Method",
     "MetricParams",
     "Model",
     "Normalisation",
     "Normals",
     "OrderRule",
+    "RobustParams",
     "RollParams",
     "Side",
     "SkeletonParams",
@@ -39,5 +50,8 @@ __all__ = [
     "StabilityParams",
     "SurfaceParams",
     "Twist",
+    "known_settings",
+    "params_class",
     "published_neighbours",
+    "settings_of",
 ]

@@ -1,6 +1,6 @@
 """What settings may be: the checks that all of them share."""
 
-from math import isfinite
+from math import inf, isfinite
 
 from tiskel.errors import TiskelError
 
@@ -18,3 +18,10 @@ def at_least(name: str, value: int | None, least: int) -> None:
 def finite(name: str, values: tuple[float, ...] | None, count: int) -> None:
     if values is not None and (len(values) != count or not all(map(isfinite, values))):
         raise TiskelError(f"{name} must be {count} finite numbers, got {values}")
+
+
+def between(name: str, value: float, low: float, high: float) -> None:
+    """Raise where a number is not finite or lies outside its limits, which it may reach."""
+    if not (isfinite(value) and low <= value <= high):
+        limits = f"at least {low:g}" if high == inf else f"from {low:g} to {high:g}"
+        raise TiskelError(f"{name} must be a number {limits}, got {value}")

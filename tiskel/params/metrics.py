@@ -5,7 +5,7 @@ from typing import Literal, get_args
 
 from tiskel.errors import TiskelError
 from tiskel.params.checks import among, at_least
-from tiskel.params.contraction import MIN_POINTS, Normalisation
+from tiskel.params.methods import MIN_POINTS, Normalisation
 
 Bars = Literal["toolbox", "max"]
 

@@ -51,6 +51,6 @@ def _counts(s: Skeleton) -> str:
         (s.components, "component"),
         (s.loops, "loop"),
         (s.ends, "end"),
-        (s.joints, "joint"),
+        (s.junctions, "joint"),
     )
     return ", ".join(f"{count} {word}{'' if count == 1 else 's'}" for count, word in words)

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import Strip
-from tiskel.io.curves import Curve
+from tiskel.geometry.graph import CurveGraph
 from tiskel.params import SurfaceParams
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
@@ -38,9 +38,7 @@ class _Rejected(Exception):
     """A branch without a surface, and why."""
 
 
-def fit_surface(
-    skeleton: Skeleton | Curve, params: SurfaceParams | None = None, cloud: Points | None = None
-) -> Surfaces:
+def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: Points | None = None) -> Surfaces:
     """Fit a Fourier surface around every branch of a skeleton (Wen et al. 2025; see :mod:`tiskel.surfaces.tube`).
 
     Of a tiskel skeleton every slice sees the points of its branch only; of a
@@ -56,7 +54,7 @@ def fit_surface(
             raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
         every, owned = as_points(cloud), False
     surfaces, rejected = [], {}
-    for path in paths_of(skeleton.nodes, skeleton.edges, params.branch):
+    for path in paths_of(skeleton, params.branch):
         near = np.flatnonzero(np.isin(owner, path.nodes)) if owned else np.arange(len(every))
         try:
             surfaces.append(_fitted(path, skeleton.nodes, every, near.astype(np.int32), owned, params))

@@ -6,9 +6,9 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Indices
 from tiskel.errors import TiskelError
-from tiskel.geometry import graph
+from tiskel.geometry.graph import CurveGraph
 
 LEAST_NODES = 3  # fewer have no direction to follow
 
@@ -25,20 +25,20 @@ class Path:
         return len(self.nodes) > 1 and bool(self.nodes[0] == self.nodes[-1])
 
 
-def paths_of(nodes: Points, edges: Indices, branch: str) -> tuple[Path, ...]:
+def paths_of(curve: CurveGraph, branch: str) -> tuple[Path, ...]:
     """Return the paths that a choice of branch names: "all", "longest" or a number.
 
     A curve without edges is taken as one path in the order of its nodes. Raises
     TiskelError where there is no such branch.
     """
-    if len(nodes) == 0:
+    if len(curve.nodes) == 0:
         raise TiskelError("the skeleton has no nodes; run tiskel skeleton again")
-    if len(edges) == 0 and len(nodes) > 1:
-        links = np.arange(len(nodes), dtype=np.int32)
-        edges = np.stack([links[:-1], links[1:]], axis=1)
-    every = graph.branches(len(nodes), edges)
+    if len(curve.edges) == 0 and len(curve.nodes) > 1:
+        links = np.arange(len(curve.nodes), dtype=np.int32)
+        curve = CurveGraph(curve.nodes, np.stack([links[:-1], links[1:]], axis=1))
+    every = curve.branches
     if branch == "longest":
-        return (Path("longest", longest_path(nodes, edges)),)
+        return (Path("longest", longest_path(curve)),)
     if branch == "all":
         return tuple(Path(str(number), path) for number, path in enumerate(every))
     if int(branch) >= len(every):
@@ -46,14 +46,13 @@ def paths_of(nodes: Points, edges: Indices, branch: str) -> tuple[Path, ...]:
     return (Path(branch, every[int(branch)]),)
 
 
-def longest_path(nodes: Points, edges: Indices) -> Indices:
+def longest_path(curve: CurveGraph) -> Indices:
     """Return the longest of the shortest ways between any two ends (k,); of loops alone, the longest branch."""
-    count = len(nodes)
-    ends = np.flatnonzero(graph.degrees(count, edges) == 1)
+    count, ends = len(curve.nodes), np.flatnonzero(curve.degrees == 1)
     if len(ends) < 2:
-        return max(graph.branches(count, edges), key=lambda path: _length(nodes, path))
-    lengths = np.maximum(graph.edge_lengths(nodes, edges), np.finfo(float).tiny)
-    linked = sparse.coo_array((lengths, (edges[:, 0], edges[:, 1])), shape=(count, count)).tocsr()
+        return max(curve.branches, key=lambda path: _length(curve, path))
+    lengths = np.maximum(curve.lengths, np.finfo(float).tiny)
+    linked = sparse.coo_array((lengths, (curve.edges[:, 0], curve.edges[:, 1])), shape=(count, count)).tocsr()
     part = connected_components(linked, directed=False)[1]
     distance, before = dijkstra(linked, directed=False, indices=ends, return_predecessors=True)
     far = np.where(part[ends][:, None] == part[ends][None, :], distance[:, ends], -1.0)
@@ -64,5 +63,5 @@ def longest_path(nodes: Points, edges: Indices) -> Indices:
     return np.array(path[::-1], np.int32)
 
 
-def _length(nodes: Points, path: Indices) -> float:
-    return float(np.linalg.norm(np.diff(nodes[path], axis=0), axis=1).sum())
+def _length(curve: CurveGraph, path: Indices) -> float:
+    return float(np.linalg.norm(np.diff(curve.nodes[path], axis=0), axis=1).sum())

@@ -1,11 +1,16 @@
-"""The stage file ``contraction.ply``.
+"""The stage file ``contraction.ply``, format 2.
 
-Elements: ``vertex``, the contracted points, each with its original position
-(x0 y0 z0), its row in ``cloud`` and its ring (by place in ``vertex``; closed is
-1 where the last member connects to the first), by robust also its section and
-level; ``cloud``, every finite input point with its row in the input, the row of ``cloud`` it was merged into and the
-step of that (-1: it is left; step 0: a duplicate); ``history``, the positions
-of the points that are left after each step, step by step.
+Elements: ``vertex``, the contracted points, each with its original position (x0
+y0 z0) and its row in ``cloud``; by lbc and gls also with the end of its ring in
+``ring_member`` and whether it is closed (its last member connects to the first),
+by robust with its section and level; ``ring_member``, the members of all rings one
+after the other, by place in ``vertex``; ``cloud``, every finite input point with
+its row in the input, the row of ``cloud`` it was merged into and the step of that
+(-1: it is left; step 0: a duplicate); ``history``, where it was asked for, the
+positions of the points that are left after each step, step by step.
+
+Format 1, which is still read, has a list property ``ring`` in ``vertex``, the
+history always, and the neighbours of robust as rings.
 """
 
 from pathlib import Path
@@ -13,42 +18,71 @@ from typing import Any
 
 import numpy as np
 
+from tiskel.arrays import Numbers
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.rings import Rings
 from tiskel.io import ply
 from tiskel.io.streams import read_bytes, write_bytes
-from tiskel.methods.trace import Status, StepRecord
-from tiskel.params import ContractionParams
+from tiskel.methods.trace import Sections, Status, StepRecord
+from tiskel.params import known_settings
 
 STAGE = "contraction"
 ORIGIN = ("x0", "y0", "z0")
 
 
-def write_contraction(target: str | Path, contraction: Contraction, source: dict[str, str] | None = None) -> None:
-    """Write a stage file; "-" is standard output. source names the input and its SHA-256."""
-    write_bytes(target, dump_contraction(contraction, source))
+def write_contraction(
+    target: str | Path, contraction: Contraction, source: dict[str, str] | None = None, *, history: bool = False
+) -> None:
+    """Write a stage file.
+
+    Parameters
+    ----------
+    target : path, or "-" for standard output
+        Where to.
+    contraction : Contraction
+        What is written.
+    source : dict, optional
+        Name and SHA-256 of the input.
+    history : bool
+        Whether the positions after every step are written too; :func:`tiskel.assess_stability` needs them.
+
+    Raises
+    ------
+    TiskelError
+        Where the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tiskel import contract, make_shape, read_contraction, shape_graph, write_contraction
+    >>> c = contract(make_shape(shape_graph("capsule"))[0])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_contraction(f"{folder}/c.ply", c)
+    ...     bool((read_contraction(f"{folder}/c.ply").points == c.points).all())
+    True
+    """
+    write_bytes(target, dump_contraction(contraction, source, history=history))
 
 
-def dump_contraction(c: Contraction, source: dict[str, str] | None = None) -> bytes:
+def dump_contraction(c: Contraction, source: dict[str, str] | None = None, *, history: bool = False) -> bytes:
     """Return the bytes of a stage file: the same bytes for the same contraction."""
-    rings = ply.ragged([c.rings.of(i) for i in range(len(c.rings))])
-    vertex = ply.element(
-        "vertex",
-        {
-            **ply.xyz(c.points),
-            **ply.xyz(c.origin, ORIGIN),
-            "row": c.rows,
-            "closed": c.rings.closed.astype(np.uint8),
-            **({} if c.sections is None or c.levels is None else {"section": c.sections, "level": c.levels}),
-            "ring": rings,
-        },
-        {"ring": ("u2", "i4")},
-    )
-    cloud = ply.element(
-        "cloud", {**ply.xyz(c.cloud), "row": c.input_rows, "merged_into": c.merged_into, "merged_step": c.merged_step}
-    )
-    history = ply.element("history", ply.xyz(c.history.reshape(-1, 3)))
+    vertex: dict[str, Any] = {**ply.xyz(c.points), **ply.xyz(c.origin, ORIGIN), "row": c.rows}
+    if c.rings is not None:
+        vertex |= {"ring_end": np.cumsum(c.rings.sizes, dtype=np.int32), "closed": c.rings.closed.astype(np.uint8)}
+    if c.sections is not None:
+        vertex |= {"section": c.sections.section, "level": c.sections.level}
+    cloud: dict[str, Any] = {
+        **ply.xyz(c.cloud),
+        "row": c.input_rows,
+        "merged_into": c.merged_into,
+        "merged_step": c.merged_step,
+    }
+    elements = [ply.element("vertex", vertex), ply.element("cloud", cloud)]
+    if c.rings is not None:
+        elements.append(ply.element("ring_member", {"place": c.rings.members[c.rings.mask()]}))
+    if history:
+        elements.append(ply.element("history", ply.xyz(c.history.reshape(-1, 3))))
     facts = {
         "source": source or {},
         "params": ply.plain(c.params),
@@ -56,11 +90,23 @@ def dump_contraction(c: Contraction, source: dict[str, str] | None = None) -> by
         "warnings": list(c.warnings),
         "steps": [_step_facts(step) for step in c.steps],
     }
-    return ply.dump([vertex, cloud, history], STAGE, facts)
+    return ply.dump(elements, STAGE, facts)
 
 
 def read_contraction(source: str | Path) -> Contraction:
-    """Read a stage file; "-" is standard input."""
+    """Read a stage file; "-" is standard input.
+
+    Raises TiskelError where the file is missing, damaged, or none of this stage.
+
+    Examples
+    --------
+    >>> from tiskel import TiskelError, read_contraction
+    >>> try:
+    ...     read_contraction("missing.ply")
+    ... except TiskelError as error:
+    ...     print(error)
+    no file missing.ply; check the path
+    """
     return parse_contraction(read_bytes(source), str(source))
 
 
@@ -73,28 +119,43 @@ def parse_contraction(data: bytes, name: str) -> Contraction:
         return Contraction(
             points=ply.points_of(vertex),
             origin=ply.points_of(vertex, ORIGIN),
-            rows=np.array(vertex["row"], np.int32),
-            rings=_rings(vertex),
+            rows=_places(vertex["row"], len(cloud), "row"),
             cloud=ply.points_of(cloud),
             input_rows=np.array(cloud["row"], np.int32),
-            merged_into=np.array(cloud["merged_into"], np.int32),
+            merged_into=_places(cloud["merged_into"], len(cloud), "merged_into", none=True),
             merged_step=np.array(cloud["merged_step"], np.int32),
-            history=ply.points_of(file["history"].data).reshape(-1, len(vertex), 3),
+            history=_history(file, len(vertex)),
             steps=tuple(StepRecord(**step, seconds={}) for step in facts["steps"]),
             status=Status(facts["status"]),
             warnings=tuple(facts["warnings"]),
-            params=ContractionParams(**facts["params"]),
-            **_sections(vertex),
+            params=known_settings(facts["params"]),
+            rings=_rings(file),
+            sections=_sections(vertex),
         )
-    except (KeyError, ValueError, TypeError) as error:
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise TiskelError(f"{name} is a damaged contraction file: {error}; run tiskel contract again") from None
 
 
-def _sections(vertex: Any) -> dict[str, Any]:
+def _places(column: Any, count: int, name: str, *, none: bool = False) -> Any:
+    """Return row numbers, checked: each below the count, and at least 0, or -1 where there may be none."""
+    values = np.array(column, np.int32)
+    if len(values) and (values.max() >= count or values.min() < (-1 if none else 0)):
+        raise ValueError(f"{name} names row {values.max()} of {count}")
+    return values
+
+
+def _history(file: Any, count: int) -> Numbers:
+    if "history" not in file:
+        return np.zeros((0, count, 3))
+    return ply.points_of(file["history"].data).reshape(-1, count, 3)
+
+
+def _sections(vertex: Any) -> Sections | None:
     """Return what only robust writes."""
     if "section" not in (vertex.dtype.names or ()):
-        return {}
-    return {"sections": np.array(vertex["section"], np.int32), "levels": np.array(vertex["level"], np.int32)}
+        return None
+    section = _places(vertex["section"], len(vertex), "section", none=True)
+    return Sections(section, np.array(vertex["level"], np.int32))
 
 
 def _step_facts(step: StepRecord) -> dict[str, Any]:
@@ -108,11 +169,21 @@ def _step_facts(step: StepRecord) -> dict[str, Any]:
     }
 
 
-def _rings(vertex: Any) -> Rings:
-    sizes = np.array([len(ring) for ring in vertex["ring"]], np.int32)
+def _rings(file: Any) -> Rings | None:
+    """Return the rings that lbc and gls write."""
+    vertex = file["vertex"].data
+    names = vertex.dtype.names or ()
+    if "section" in names or not {"ring_end", "ring"} & set(names):
+        return None
+    if "ring_end" in names:
+        ends, flat = np.array(vertex["ring_end"], np.int64), np.array(file["ring_member"].data["place"], np.int32)
+        sizes = np.diff(ends, prepend=0)
+        if len(flat) != (ends[-1] if len(ends) else 0) or (sizes < 0).any():
+            raise ValueError(f"rings end at {ends[-1] if len(ends) else 0}, {len(flat)} members are listed")
+    else:
+        sizes = np.array([len(ring) for ring in vertex["ring"]], np.int64)
+        flat = np.concatenate([np.zeros(0, np.int32), *vertex["ring"]]).astype(np.int32)
+    _places(flat, len(sizes), "a ring")
     members = np.full((len(sizes), max(1, int(sizes.max(initial=1)))), -1, np.int32)
-    if len(sizes):
-        members[np.arange(members.shape[1]) < sizes[:, None]] = np.concatenate(list(vertex["ring"]))
-    if members.max(initial=-1) >= len(sizes):
-        raise ValueError("a ring names a point that is not there")
-    return Rings(members, sizes, np.array(vertex["closed"], np.int32))
+    members[np.arange(members.shape[1]) < sizes[:, None]] = flat
+    return Rings(members, sizes.astype(np.int32), np.array(vertex["closed"], np.int32))

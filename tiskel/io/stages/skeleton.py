@@ -1,11 +1,13 @@
-"""The stage file ``skeleton.ply``: a line set that other tools read, and all that later stages need.
+"""The stage file ``skeleton.ply``, format 2: a line set that other tools read, and all that later stages need.
 
-Elements: ``vertex`` (x y z radius branch degree; branch is -1 for a joint,
-which belongs to several) and ``edge`` (vertex1 vertex2); ``branch``, how many
-nodes each has, and ``branch_node``, these nodes one branch after the other
-(trimesh gives up on lists of different lengths); ``contracted``, the contracted
-points with origin, row in ``cloud`` and node; ``cloud``, every finite input
-point with its row in the input and its node.
+Elements: ``vertex`` (x y z radius branch degree; branch is -1 for a junction,
+which belongs to several) and ``edge`` (vertex1 vertex2); ``edge_source`` (bridged: 1
+where an edge was laid over a gap, 0 where it follows points; trimesh reads no edges
+of more than two properties); ``branch``, how many nodes each has, and
+``branch_node``, these nodes one branch after the other (trimesh gives up on lists
+of different lengths); ``contracted``, the contracted points with origin,
+row in ``cloud`` and node; ``cloud``, every finite input point with its row in the
+input and its node. Format 1, which is still read, does not say what was bridged.
 """
 
 from pathlib import Path
@@ -13,46 +15,82 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Indices
+from tiskel.arrays import Indices, Mask
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.stages.contraction import ORIGIN
 from tiskel.io.streams import read_bytes, write_bytes
-from tiskel.params import SkeletonParams
+from tiskel.params import known_settings
 from tiskel.skeleton import Skeleton
 
 STAGE = "skeleton"
 
 
-def write_skeleton(
-    target: str | Path, skeleton: Skeleton, params: SkeletonParams | None = None, source: dict[str, str] | None = None
-) -> None:
-    """Write a stage file; "-" is standard output."""
-    write_bytes(target, dump_skeleton(skeleton, params, source))
+def write_skeleton(target: str | Path, skeleton: Skeleton, source: dict[str, str] | None = None) -> None:
+    """Write a stage file.
+
+    Parameters
+    ----------
+    target : path, or "-" for standard output
+        Where to.
+    skeleton : Skeleton
+        What is written.
+    source : dict, optional
+        Name and SHA-256 of the input.
+
+    Raises
+    ------
+    TiskelError
+        Where the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tiskel import make_shape, read_skeleton, shape_graph, write_skeleton
+    >>> cloud, true = make_shape(shape_graph("y"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_skeleton(f"{folder}/y.ply", true)
+    ...     read_skeleton(f"{folder}/y.ply").ends
+    3
+    """
+    write_bytes(target, dump_skeleton(skeleton, source))
 
 
-def dump_skeleton(s: Skeleton, params: SkeletonParams | None = None, source: dict[str, str] | None = None) -> bytes:
+def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
     """Return the bytes of a stage file: the same bytes for the same skeleton."""
-    vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radius, "branch": s.branch_of_node(), "degree": s.degrees}
+    vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radii, "branch": s.branch_of_node(), "degree": s.degrees}
     contracted: dict[str, Any] = {**ply.xyz(s.contracted), **ply.xyz(s.origin, ORIGIN), "row": s.rows}
     contracted["node"] = s.node_of_point[s.rows]
     cloud: dict[str, Any] = {**ply.xyz(s.cloud), "row": s.input_rows, "node": s.node_of_point}
     elements = [
         ply.element("vertex", vertex),
         ply.element("edge", {"vertex1": s.edges[:, 0], "vertex2": s.edges[:, 1]}),
+        ply.element("edge_source", {"bridged": s.bridged.astype(np.uint8)}),
         ply.element("branch", {"count": np.array([len(branch) for branch in s.branches], np.int32)}),
         ply.element("branch_node", {"node": np.concatenate([np.empty(0, np.int32), *s.branches])}),
         ply.element("contracted", contracted),
         ply.element("cloud", cloud),
     ]
-    facts = {"source": source or {}, "warnings": list(s.warnings)}
-    if params is not None:
-        facts["params"] = ply.plain(params)
+    facts: dict[str, Any] = {"source": source or {}, "warnings": list(s.warnings)}
+    if s.params is not None:
+        facts["params"] = ply.plain(s.params)
     return ply.dump(elements, STAGE, facts)
 
 
 def read_skeleton(source: str | Path) -> Skeleton:
-    """Read a stage file; "-" is standard input."""
+    """Read a stage file; "-" is standard input.
+
+    Raises TiskelError where the file is missing, damaged, or none of this stage.
+
+    Examples
+    --------
+    >>> from tiskel import TiskelError, read_skeleton
+    >>> try:
+    ...     read_skeleton("missing.ply")
+    ... except TiskelError as error:
+    ...     print(error)
+    no file missing.ply; check the path
+    """
     return parse_skeleton(read_bytes(source), str(source))
 
 
@@ -62,24 +100,57 @@ def parse_skeleton(data: bytes, name: str) -> Skeleton:
     facts = ply.facts(file, STAGE, name)
     try:
         vertex, edge, contracted, cloud = (file[part].data for part in ("vertex", "edge", "contracted", "cloud"))
+        _check_branches(file["branch"].data["count"], file["branch_node"].data["node"])
+        params = facts.get("params", {})
         return Skeleton(
-            nodes=ply.points_of(vertex),
-            edges=np.stack([edge["vertex1"], edge["vertex2"]], axis=1).astype(np.int32),
-            radius=np.array(vertex["radius"], np.float64),
-            branches=_branches(file["branch"].data["count"], file["branch_node"].data["node"]),
-            node_of_point=np.array(cloud["node"], np.int32),
+            nodes=_finite(ply.points_of(vertex)),
+            edges=_edges(edge, len(vertex)),
+            radii=np.array(vertex["radius"], np.float64),
+            bridged=_bridged(file, len(edge)),
+            node_of_point=_nodes(cloud["node"], len(vertex)),
             cloud=ply.points_of(cloud),
             input_rows=np.array(cloud["row"], np.int32),
             contracted=ply.points_of(contracted),
             origin=ply.points_of(contracted, ORIGIN),
             rows=np.array(contracted["row"], np.int32),
             warnings=tuple(facts.get("warnings", ())),
+            params=known_settings(params) if "method" in params else None,
         )
-    except (KeyError, ValueError, TypeError) as error:
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise TiskelError(f"{name} is a damaged skeleton file: {error}; run tiskel skeleton again") from None
 
 
-def _branches(counts: Indices, nodes: Indices) -> tuple[Indices, ...]:
+def _bridged(file: Any, count: int) -> Mask:
+    """Return which edges were bridged; none in a file of format 1."""
+    if "edge_source" not in file:
+        return np.zeros(count, bool)
+    bridged = np.array(file["edge_source"].data["bridged"], bool)
+    if len(bridged) != count:
+        raise ValueError(f"{len(bridged)} sources of edges for {count} edges")
+    return bridged
+
+
+def _finite(nodes: Any) -> Any:
+    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
+    if len(bad):
+        raise ValueError(f"node {bad[0]} is at {nodes[bad[0]].tolist()}")
+    return nodes
+
+
+def _nodes(column: Any, count: int) -> Indices:
+    nodes = np.array(column, np.int32)
+    if len(nodes) and (nodes.min() < 0 or nodes.max() >= count):
+        raise ValueError(f"a point or an edge names node {nodes.max()}, there are {count}")
+    return nodes
+
+
+def _edges(edge: Any, count: int) -> Indices:
+    edges = np.stack([_nodes(edge["vertex1"], count), _nodes(edge["vertex2"], count)], axis=1)
+    if len(np.unique(np.sort(edges, axis=1), axis=0)) < len(edges) or (edges[:, 0] == edges[:, 1]).any():
+        raise ValueError("an edge is there twice, or leads nowhere")
+    return edges
+
+
+def _check_branches(counts: Indices, nodes: Indices) -> None:
     if counts.sum() != len(nodes):
         raise ValueError(f"branches have {counts.sum()} nodes, {len(nodes)} are listed")
-    return tuple(np.split(np.array(nodes, np.int32), np.cumsum(counts)[:-1]))

@@ -20,8 +20,9 @@ from tiskel.geometry.rings import Rings, cotangent_laplacian, mean_ring_length, 
 from tiskel.geometry.solve import SingularStep, contracted
 from tiskel.methods.laplacian.lbc import grew, next_weights, weighted
 from tiskel.methods.laplacian.reduction import Merge, matching, merge, stage_function
-from tiskel.methods.trace import Status, StepRecord, Stopwatch, Trace
-from tiskel.params import ContractionParams
+from tiskel.methods.trace import Status, StepRecord, Trace
+from tiskel.params import GlsParams
+from tiskel.timing import Stopwatch
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class _State:
     count_before: int  # points when the score was taken
 
 
-def contract_gls(points: Points, params: ContractionParams, weights: Numbers | None = None) -> Trace:
+def contract_gls(points: Points, params: GlsParams, weights: Numbers | None = None) -> Trace:
     """Contract and reduce until the explained score settles; points normalised, weights (n,) as in lbc."""
     watch = Stopwatch()
     with watch.measure("rings"):
@@ -50,7 +51,7 @@ def contract_gls(points: Points, params: ContractionParams, weights: Numbers | N
     steps: list[StepRecord] = []
     history: list[tuple[Indices, Points]] = []
     status = Status.MAX_STEPS
-    for number in range(params.step_limit()):
+    for number in range(params.max_steps):
         step_watch = Stopwatch()
         try:
             delta, there = _solve(state, params, step_watch, weights)
@@ -77,8 +78,9 @@ def contract_gls(points: Points, params: ContractionParams, weights: Numbers | N
         state = _after(state, there, reduced, kept, score, params)
         history.append((state.rows, state.points))
     return Trace(
-        state.points, state.rows, state.rings, merged_into, merged_step,
-        tuple(history), tuple(steps), status, watch.seconds["rings"],
+        cloud=points, points=state.points, rows=state.rows, merged_into=merged_into, merged_step=merged_step,
+        history=tuple(history), steps=tuple(steps), status=status, rings=state.rings,
+        ring_seconds=watch.seconds["rings"],
     )  # fmt: skip
 
 
@@ -88,7 +90,7 @@ def explained_score(points: Points) -> float:
     return float((values.sum() + values[2]) / (2 * values.sum()))
 
 
-def _start(points: Points, params: ContractionParams) -> _State:
+def _start(points: Points, params: GlsParams) -> _State:
     _, axes, rings = surroundings(points, params.neighbours_for(len(points)))
     everyone = np.arange(len(points), dtype=np.int32)
     weight = 1 / (5 * mean_ring_length(points, rings, count_first_twice=False))
@@ -98,9 +100,7 @@ def _start(points: Points, params: ContractionParams) -> _State:
     )  # fmt: skip
 
 
-def _solve(
-    state: _State, params: ContractionParams, watch: Stopwatch, weights: Numbers | None
-) -> tuple[Points, Points]:
+def _solve(state: _State, params: GlsParams, watch: Stopwatch, weights: Numbers | None) -> tuple[Points, Points]:
     """Return the Laplacian coordinates before the solve, and the contracted cloud."""
     with watch.measure("laplacian"):
         laplacian = cotangent_laplacian(state.points, state.rings, params.cotangent_cap)
@@ -115,9 +115,7 @@ def _solve(
     return np.ascontiguousarray(laplacian @ state.points), there
 
 
-def _reduce(
-    state: _State, there: Points, delta: Points, sizes: Numbers, params: ContractionParams, weight: float
-) -> Merge:
+def _reduce(state: _State, there: Points, delta: Points, sizes: Numbers, params: GlsParams, weight: float) -> Merge:
     """Mark the points with F < phi s^2 and merge each with its nearest ring member."""
     before = smallest_distances(state.points, state.rings)
     shrinkage = params.epsilon * float((before.sum() - sizes.sum()) / state.first_sizes.sum())
@@ -130,9 +128,7 @@ def _reduce(
     return merge(state.origin, state.rings, pairs, np.where(vanishing[:, None], state.normals, delta))
 
 
-def _after(
-    state: _State, there: Points, reduced: Merge, kept: Indices, score: float, params: ContractionParams
-) -> _State:
+def _after(state: _State, there: Points, reduced: Merge, kept: Indices, score: float, params: GlsParams) -> _State:
     """Return the cloud without the removed points, with the weights of the next step."""
     place = np.full(len(there), -1, np.int32)
     place[kept] = np.arange(len(kept), dtype=np.int32)

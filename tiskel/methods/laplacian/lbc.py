@@ -13,11 +13,12 @@ from tiskel.geometry.neighbours import surroundings
 from tiskel.geometry.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
 from tiskel.geometry.solve import SingularStep, contracted
 from tiskel.methods.laplacian.toolbox_order import in_published_order
-from tiskel.methods.trace import Status, StepRecord, Stopwatch, Trace
-from tiskel.params import ContractionParams
+from tiskel.methods.trace import Status, StepRecord, Trace
+from tiskel.params import LaplacianParams, LbcParams
+from tiskel.timing import Stopwatch
 
 
-def contract_lbc(points: Points, params: ContractionParams, weights: Numbers | None = None) -> Trace:
+def contract_lbc(points: Points, params: LbcParams, weights: Numbers | None = None) -> Trace:
     """Contract until the ratio of summed ring sizes falls by less than the stop ratio; points normalised.
 
     weights (n,) multiply W_L point by point, as in S-LBC (Meyer et al. 2023), where parts of one thickness share one.
@@ -32,7 +33,7 @@ def contract_lbc(points: Points, params: ContractionParams, weights: Numbers | N
     steps: list[StepRecord] = []
     history: list[tuple[Indices, Points]] = []
     everyone = np.arange(len(points), dtype=np.int32)
-    for _ in range(params.step_limit()):
+    for _ in range(params.max_steps):
         step_watch = Stopwatch()
         try:
             there = one_step(here, rings, contraction, attraction, params, step_watch, weights)
@@ -52,7 +53,10 @@ def contract_lbc(points: Points, params: ContractionParams, weights: Numbers | N
         here = there
         contraction, attraction = next_weights(contraction, first_sizes, sizes, params)
     never = np.full(len(points), -1, np.int32)
-    return Trace(here, everyone, rings, never, never, tuple(history), tuple(steps), status, watch.seconds["rings"])
+    return Trace(
+        cloud=points, points=here, rows=everyone, merged_into=never, merged_step=never, history=tuple(history),
+        steps=tuple(steps), status=status, rings=rings, ring_seconds=watch.seconds["rings"],
+    )  # fmt: skip
 
 
 def published_rings(points: Points, k: int) -> Rings:
@@ -66,7 +70,7 @@ def one_step(
     rings: Rings,
     contraction: float,
     attraction: Points,
-    params: ContractionParams,
+    params: LbcParams,
     watch: Stopwatch,
     weights: Numbers | None = None,
 ) -> Points:
@@ -82,13 +86,13 @@ def weighted(laplacian: sparse.csr_array, weights: Numbers | None) -> sparse.csr
     return laplacian if weights is None else sparse.csr_array(sparse.diags_array(weights) @ laplacian)
 
 
-def grew(points: Points, original: Points, params: ContractionParams) -> bool:
+def grew(points: Points, original: Points, params: LaplacianParams) -> bool:
     """Tell whether a side of the bounding box has grown past the limit."""
     return bool((np.ptp(points, axis=0) > params.box_growth * np.ptp(original, axis=0)).any())
 
 
 def next_weights(
-    contraction: float, first_sizes: Points, sizes: Points, params: ContractionParams
+    contraction: float, first_sizes: Points, sizes: Points, params: LaplacianParams
 ) -> tuple[float, Points]:
     """W_L <- s_L W_L; W_H,i <- W_H(0) S_i(0) / S_i(k); both capped (Cao et al. 2010, section 3.3)."""
     with np.errstate(divide="ignore", invalid="ignore"):

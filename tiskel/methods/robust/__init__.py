@@ -1,1 +1,86 @@
-"""Method "robust": sections of the original cloud by fronts, their graph, and a curve of round cones fitted to it."""
+"""Method "robust": fronts over the original cloud, the graph of their sections, round cones fitted to the cloud.
+
+docs/robust.md shows each step on a cloud. The algorithm:
+
+1. Neighbours along the surface of every point, its normal and its spacing, in the cloud's own axes.
+2. A front runs from an end over this graph; the connected pieces of each bin of geodesic distance are sections.
+3. Points move to the axes of their sections; two more fronts run over the contracted cloud.
+4. The sections, joined where their points are neighbours, are a Reeb graph; cycles that bound a disc inside the
+   body are closed, spurs go, junctions that are close become one.
+5. Round cones are fitted to the cloud along the graph; branches that they miss grow, branches that explain nothing
+   go, junctions move to where their branches meet, ends grow into the tips, gaps in the scan are bridged.
+6. The misfit says how far the curve is to be trusted: places outside the body, points far from the cones, loops
+   unlike the handles of the solid. While there is much of it, further fronts from other ends are tried.
+
+Sources: Reeb graphs of geodesic distance, Verroust and Lazarus 2000, Ge et al. 2011; axes from normals, Tagliasacchi
+et al. 2009 (ROSA); models of round cones, Thiery et al. 2013; winding numbers of clouds, Barill et al. 2018.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from tiskel.arrays import Numbers, Points
+from tiskel.errors import TiskelError
+from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.solid import solid_of
+from tiskel.methods.robust.checks import Candidate, warnings_of
+from tiskel.methods.robust.fronts import contract_by_fronts, further_front
+from tiskel.methods.robust.network import Network, prepared
+from tiskel.methods.robust.pipeline import fitted_curve
+from tiskel.methods.trace import MethodCurve, Trace
+from tiskel.params import RobustParams
+from tiskel.timing import Stopwatch
+
+DOUBTFUL = 0.012  # misfit from which on a further front is tried; every one after it needs as much again
+CLEARLY = 0.7  # of the misfit that another front may leave, to be taken
+
+
+def contract(points: Points, params: RobustParams, weights: Numbers | None = None) -> Trace:
+    """Contract a cloud (n, 3) by fronts, one step each.
+
+    Raises TiskelError for weights: every part goes to its axis at once, whatever its thickness.
+    """
+    if weights is not None:
+        raise TiskelError("method robust takes no weights; leave them out, or choose method lbc or gls")
+    watch = Stopwatch()
+    with watch.measure("network"):
+        network = prepared(points, params.neighbours_for(len(points)))
+    trace = contract_by_fronts(network, points, params)
+    return replace(trace, ring_seconds=trace.ring_seconds + watch.seconds["network"])
+
+
+def curve(trace: Trace, params: RobustParams) -> MethodCurve:
+    """Return the curve of round cones of a contracted cloud.
+
+    Raises TiskelError where the trace has no sections: it is another method's.
+    """
+    if trace.sections is None:
+        raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
+    network = trace.prepared or prepared(trace.cloud[trace.rows], params.neighbours_for(len(trace.rows)))
+    contracted = np.ascontiguousarray(trace.points @ network.axes.T)
+    solid = solid_of(network.oriented(contracted))
+    best = fitted_curve(network, solid, trace.sections, params)
+    for number in range(1, params.extra_fronts + 1):
+        if best.misfit < number * DOUBTFUL:
+            break
+        sections = further_front(network, contracted, params, number)
+        other = fitted_curve(network, solid, sections, params)
+        best = other if other.misfit < CLEARLY * best.misfit else best
+    return _translated(best, trace, network)
+
+
+def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
+    """Return the curve in the axes of the trace, the node of every point, and the points' foot points."""
+    from scipy.spatial import cKDTree
+
+    curve, fit = best.curve, best.fit
+    node = curve.node_of_section[best.sections.section]
+    node[fit.rows] = fit.nodes
+    lost = np.flatnonzero(node < 0)  # in small components
+    if len(lost):
+        node[lost] = cKDTree(curve.nodes).query(network.points[lost])[1]
+    contracted = trace.points.copy()
+    contracted[fit.rows] = fit.places @ network.axes
+    graph = CurveGraph(curve.nodes @ network.axes, curve.edges, curve.radii, curve.bridged)
+    return MethodCurve(graph, node[trace.survivor_of()], contracted, warnings_of(best))

@@ -1,38 +1,49 @@
-"""Ends and the limbs they belong to: which are real, and how far they reach."""
+"""Branches: which are real, which were missed, and how far they reach."""
+
+from dataclasses import replace
 
 import numpy as np
 
 from tiskel.arrays import Indices, Numbers, Points
-from tiskel.methods.robust.curve import ConeCurve, contract_nodes, with_nodes
-from tiskel.methods.robust.fit import Feet, distances
+from tiskel.geometry.graph import connected_sets, node_radii
+from tiskel.methods.robust.axes import line_centres
+from tiskel.methods.robust.curve import ConeCurve, contract_nodes, with_nodes, without_path
+from tiskel.methods.robust.fit import ConeFit, foot_points
+from tiskel.methods.robust.network import Network
+from tiskel.methods.trace import Sections
+from tiskel.params import RobustParams
 
-BARELY = 1.0  # a limb that reaches no further from its joint, in the joint's radius, is none
+BARELY = 1.0  # a branch that reaches no further from its junction, in the junction's radius, is a spur
 CONTAINED = 1.15  # of a node's radius: balls within so much are part of its ball
-STICKS_OUT = 0.5  # of the smaller of the limb's and the joint's radius: what a limb sticks out of the rest at least
-STICKS_OUT_SPACINGS = 1.5
+STICKS_OUT_SPACINGS = 1.5  # what a branch sticks out of the rest at least
 FARTHEST = 0.98  # quantile of its points that says how far
+HANGING = 1.3  # radii of a junction about the branch's end in which the junction's points count for the branch
 TIP_SHARE, TIP_LEAST = 0.05, 3  # the farthest points ahead of an end
 AHEAD = 0.5  # cosine to the direction of the end
 GROWS, GROWS_SPACINGS, GROWS_DEVIATIONS = 0.2, 1.0, 3.0  # the end does not reach the tip: in radii, and at least
-TINY = np.finfo(float).tiny  # stands in for the radius of a node whose points lie on it
 TAPER = 0.5, 0.9  # radius of a new tip in that of the end: the first guess, and at most
+OFF, OFF_SPACINGS, OFF_DEVIATIONS = 0.25, 1.5, 4.0  # points further off the curve: in local radii, and at least
+MISSED = 0.5  # local radii that a missed branch sticks out
+RIDGE = 1.5  # local radii along the curve: what is longer is the rim of a flat part, and no branch
+FEWEST = 12  # points of a missed branch
+TINY = np.finfo(float).tiny  # stands in for the radius of a node whose points lie on it
 
 
-def without_stubs(curve: ConeCurve, points: Points) -> ConeCurve:
-    """Contract, the shortest first, limbs whose points do not even leave the ball of their joint."""
+def without_spurs(curve: ConeCurve, points: Points, sections: Sections) -> ConeCurve:
+    """Contract, the shortest first, branches whose points do not even leave the ball of their junction."""
     while True:
-        stubs, degree, around = [], curve.degrees, curve.around()
+        spurs, owner = [], curve.node_of_section[sections.section]
         for path in curve.paths_from(ends=True):
             joint = int(path[-1])
-            rows = np.flatnonzero(np.isin(curve.owner, path[:-1]))
-            if degree[joint] > 2 and len(rows):
-                others = [curve.radii[node] for node in around[joint] if node != path[-2]]
+            rows = np.flatnonzero(np.isin(owner, path[:-1]))
+            if curve.degrees[joint] > 2 and len(rows):
+                others = [curve.radii[node] for node in curve.neighbours[joint] if node != path[-2]]
                 radius = max(min(float(curve.radii[joint]), float(np.mean(others))), TINY)
-                stubs.append((float(np.linalg.norm(points[rows] - curve.nodes[joint], axis=1).max()) / radius, path))
-        shortest = min(stubs, key=lambda stub: (stub[0], int(stub[1][0])), default=None)
+                spurs.append((float(np.linalg.norm(points[rows] - curve.nodes[joint], axis=1).max()) / radius, path))
+        shortest = min(spurs, key=lambda spur: (spur[0], int(spur[1][0])), default=None)
         if shortest is None or shortest[0] >= BARELY:
             return curve
-        curve = _without(curve, shortest[1])
+        curve = without_path(curve, shortest[1])
 
 
 def without_contained_ends(curve: ConeCurve) -> ConeCurve:
@@ -44,53 +55,61 @@ def without_contained_ends(curve: ConeCurve) -> ConeCurve:
     into = np.arange(len(curve.nodes), dtype=np.int32)
     for path in curve.paths_from(ends=True):
         for last in range(len(path) - 2, 0, -1):
-            reach = (
-                np.linalg.norm(curve.nodes[path[:last]] - curve.nodes[path[last]], axis=1) + curve.radii[path[:last]]
-            )
-            if (reach <= CONTAINED * curve.radii[path[last]]).all():
+            away = np.linalg.norm(curve.nodes[path[:last]] - curve.nodes[path[last]], axis=1)
+            if (away + curve.radii[path[:last]] <= CONTAINED * curve.radii[path[last]]).all():
                 into[path[:last]] = path[last]
                 break
     return contract_nodes(curve, into)
 
 
-def without_explained_limb(curve: ConeCurve, points: Points, spacing: float) -> ConeCurve | None:
-    """Contract the limb that sticks out least of what the rest of the curve explains; None where all do enough."""
-    limbs, degree = [], curve.degrees
+def without_explained_branch(
+    curve: ConeCurve, network: Network, sections: Sections, least: float
+) -> ConeCurve | None:  # fmt: skip
+    """Contract the branch that sticks out least of what the rest of the curve explains; None where all do enough.
+
+    least is what a branch has to stick out, in the smaller of its radius and its
+    junction's.
+    """
+    branches, degree = [], curve.degrees
+    owner = curve.node_of_section[sections.section]
     for path in curve.paths_from(ends=True):
         if degree[path[-1]] > 2:
             radius = min(float(curve.radii[path[:-1]].max()), float(curve.radii[path[-1]]))
-            asked = max(STICKS_OUT * radius, STICKS_OUT_SPACINGS * spacing)
-            limbs.append((_protrusion(curve, points, path) / asked, path))
-    least = min(limbs, key=lambda limb: (limb[0], int(limb[1][0])), default=None)
-    return None if least is None or least[0] >= 1 else _without(curve, least[1])
+            asked = max(least * radius, STICKS_OUT_SPACINGS * network.spacing)
+            branches.append((_protrusion(curve, network.points, owner, path) / asked, path))
+    first = min(branches, key=lambda branch: (branch[0], int(branch[1][0])), default=None)
+    return None if first is None or first[0] >= 1 else without_path(curve, first[1])
 
 
-def _protrusion(curve: ConeCurve, points: Points, path: Indices) -> float:
-    """Return how far the points of a limb lie from the surface of the rest, 0 where it has none."""
-    own = np.isin(curve.owner, path[:-1])
-    near = curve.owner == path[-1]
-    near[near] = np.linalg.norm(points[near] - curve.nodes[path[0]], axis=1) < 1.3 * curve.radii[path[0]]
+def _protrusion(curve: ConeCurve, points: Points, owner: Indices, path: Indices) -> float:
+    """Return how far the points of a branch lie from the surface of the rest, 0 where it has none."""
+    own = np.isin(owner, path[:-1])
+    near = owner == path[-1]
+    near[near] = np.linalg.norm(points[near] - curve.nodes[path[0]], axis=1) < HANGING * curve.radii[path[0]]
     rows: Indices = np.flatnonzero(own | near).astype(np.int32)
     rest: Indices = np.flatnonzero(~np.isin(curve.edges, path[:-1]).any(axis=1)).astype(np.int32)
     if not len(rows):
         return 0.0
     if not len(rest):
         return np.inf
-    return float(np.quantile(distances(curve, points, rows, rest), FARTHEST))
+    one_list = np.zeros(len(rows), np.int32)
+    return float(np.quantile(foot_points(curve, points, rows, one_list, rest[None], signed=True).residual, FARTHEST))
 
 
-def with_tips(curve: ConeCurve, points: Points, at: Feet, spacing: float) -> ConeCurve | None:
+def with_tips(fit: ConeFit, network: Network, sections: Sections) -> ConeCurve | None:
     """Add a node where points lie further ahead of an end than its ball reaches; None where none do."""
-    edges, least = curve.edges[at.edge], max(GROWS_SPACINGS * spacing, GROWS_DEVIATIONS * at.deviation)
+    curve, points = fit.curve, network.points
+    edges, least = curve.edges[fit.edge], max(GROWS_SPACINGS * network.spacing, GROWS_DEVIATIONS * fit.deviation)
+    owner = curve.node_of_section[sections.section[fit.rows]]
     tips = []
     for path in curve.paths_from(ends=True):
         end = int(path[0])
-        stands = ((edges[:, 0] == end) & (at.share == 0)) | ((edges[:, 1] == end) & (at.share == 1))
-        mine = at.rows[stands | (curve.owner[at.rows] == end)]
+        stands = ((edges[:, 0] == end) & (fit.share == 0)) | ((edges[:, 1] == end) & (fit.share == 1))
+        mine = fit.rows[stands | (owner == end)]
         tip = _tip(points[mine] - curve.nodes[end], curve.heading(path))
         reach, radius = float(np.linalg.norm(tip)), float(curve.radii[end])
         if reach - radius > max(GROWS * radius, least):
-            new = min(max(TAPER[0] * radius, 0.5 * spacing), TAPER[1] * radius)
+            new = min(max(TAPER[0] * radius, 0.5 * network.spacing), TAPER[1] * radius)
             tips.append((end, curve.nodes[end] + tip * (1 - new / reach), new))
     if not tips:
         return None
@@ -109,7 +128,56 @@ def _tip(offsets: Points, direction: Numbers) -> Numbers:
     return np.asarray(offsets[farthest[: max(TIP_LEAST, int(TIP_SHARE * len(ahead)))]].mean(axis=0))
 
 
-def _without(curve: ConeCurve, path: Indices) -> ConeCurve:
-    into = np.arange(len(curve.nodes), dtype=np.int32)
-    into[path[:-1]] = path[-1]
-    return contract_nodes(curve, into)
+def with_missed_branches(
+    fit: ConeFit, network: Network, sections: Sections, params: RobustParams
+) -> tuple[ConeCurve, Sections] | None:
+    """Return the curve with a branch for every connected set of points that stands out of it, None where none does.
+
+    A front that reaches a branch sideways takes it in together with what it
+    hangs on. After the fit such a branch is what no round cone explains. Its
+    layers become sections of their own.
+    """
+    least = np.maximum(OFF * fit.radii, max(OFF_SPACINGS * network.spacing, OFF_DEVIATIONS * fit.deviation))
+    off = np.flatnonzero(fit.residual > least)
+    curve, section = fit.curve, sections.section.copy()
+    for members in _clusters(network, fit.rows[off]):
+        mine = off[members]
+        thick = float(fit.radii[mine].max())
+        compact = np.linalg.norm(np.ptp(fit.places[mine], axis=0)) < RIDGE * thick
+        if len(mine) >= FEWEST and fit.residual[mine].max() > MISSED * thick and compact:
+            layer = _layers(fit.residual[mine], params.resolution * network.spacing)
+            root = int(np.bincount(fit.nodes[mine][layer == 0]).argmax())
+            section[fit.rows[mine]] = len(curve.section_sizes) + layer
+            curve = _with_branch(curve, network, fit.rows[mine], layer, root)
+    if curve is fit.curve:
+        return None
+    sizes = np.bincount(section[section >= 0], minlength=len(curve.section_sizes)).astype(float)
+    return replace(curve, section_sizes=sizes), Sections(section, sections.level)
+
+
+def _clusters(network: Network, rows: Indices) -> list[Indices]:
+    """Return the connected sets of some rows of the cloud, as places in rows."""
+    place = np.full(len(network.points), -1)
+    place[rows] = np.arange(len(rows))
+    links = place[network.edges]
+    return connected_sets(len(rows), links[(links >= 0).all(axis=1)])
+
+
+def _layers(height: Numbers, width: float) -> Indices:
+    """Return the layer of each height (p,), numbered from the lowest without gaps."""
+    width = max(width, float(np.ptp(height)) / len(height))
+    layer = np.floor((height - height.min()) / width).astype(np.int32)
+    return np.unique(layer, return_inverse=True)[1].ravel().astype(np.int32)
+
+
+def _with_branch(curve: ConeCurve, network: Network, rows: Indices, layer: Indices, root: int) -> ConeCurve:
+    """Add a chain of nodes, one for every layer of the points, at the node that most of the lowest points stand on."""
+    count, first = int(layer.max()) + 1, len(curve.nodes)
+    nodes = line_centres(network.points[rows], network.normals[rows], layer, count)[0]
+    chain = np.array([root, *range(first, first + count)], np.int32)
+    grown = with_nodes(
+        curve, nodes, node_radii(nodes, network.points[rows], layer), np.stack([chain[:-1], chain[1:]], axis=1),
+        curve.levels[root] + np.arange(1, count + 1, dtype=np.int32),
+    )  # fmt: skip
+    owners = np.concatenate([curve.node_of_section[:-1], np.arange(first, first + count), [-1]]).astype(np.int32)
+    return replace(grown, node_of_section=owners, section_sizes=np.append(curve.section_sizes, np.zeros(count)))

@@ -1,8 +1,8 @@
-"""Gaps: limbs that the scan cuts through, joined again.
+"""Gaps: branches that the scan cuts through, joined again.
 
-The end of a limb is round: points lie ahead of it. Where none do, the end is
+The end of a branch is round: points lie ahead of it. Where none do, the end is
 open, a cut or the mouth of a tube. Open ends that face each other across a gap,
-and open ends that face the side of another limb, are joined.
+and open ends that face the side of another branch, are joined.
 """
 
 from dataclasses import dataclass
@@ -13,44 +13,61 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Indices, Numbers
 from tiskel.methods.robust.curve import ConeCurve, with_nodes
 from tiskel.methods.robust.network import Network
+from tiskel.methods.trace import Sections
 
 AROUND = 1.4  # radii about an end in which its cap is looked for
 AHEAD = 0.6  # radii ahead of the end, from where on points belong to the cap
 CAP = 2 * np.pi * (1 - AHEAD)  # area of a ball's cap from there on, in squared radii
 OPEN = 0.6  # an end with a smaller share of that area is open
 FACING = 0.5  # cosine between the direction of an end and the way over the gap
-FACING_SIDE = 0.7  # the same towards the side of another limb
-WIDEST, WIDEST_SIDE = 4.0, 3.0  # gaps: in the sum of both radii; in the end's own
+FACING_SIDE = 0.7  # the same towards the side of another branch
+SIDE = 0.75  # of the widest gap between two ends: the widest to the side of another branch, in the end's own radius
 ALIKE = 2.0  # largest ratio of two radii
 
 
 @dataclass(frozen=True)
 class OpenEnd:
-    """An end without a cap: its node, the direction it looks in, and the nodes of its limb."""
+    """An end without a cap.
+
+    Attributes
+    ----------
+    node : int
+        Its node.
+    direction : (3,) float64
+        The direction it looks in, a unit vector.
+    branch : frozenset of int
+        The nodes of its branch.
+    """
 
     node: int
     direction: Numbers
-    limb: frozenset[int]
+    branch: frozenset[int]
 
 
-def bridged(curve: ConeCurve, network: Network) -> tuple[ConeCurve, int]:
-    """Return the curve with its gaps closed by straight edges, and how many there were."""
-    ends = open_ends(curve, network)
-    pairs = _facing_pairs(curve, ends)
+def bridged(curve: ConeCurve, network: Network, sections: Sections, widest: float) -> tuple[ConeCurve, int]:
+    """Return the curve with its gaps closed by straight edges, and how many there were.
+
+    widest is the width of a gap at most, in the sum of the radii at its sides; 0
+    leaves all gaps open.
+    """
+    if widest == 0:
+        return curve, 0
+    ends = open_ends(curve, network, sections)
+    pairs = _facing_pairs(curve, ends, widest)
     joined = {node for pair in pairs for node in pair}
     curve = _with_edges(curve, pairs)
     sides: list[tuple[int, int]] = []
     for end in ends:
-        side = None if end.node in joined else _facing_side(curve, end)
+        side = None if end.node in joined else _facing_side(curve, end, SIDE * widest)
         if side is not None:
             sides.append((end.node, side))
     return _with_edges(curve, sides), len(pairs) + len(sides)
 
 
-def open_ends(curve: ConeCurve, network: Network) -> list[OpenEnd]:
+def open_ends(curve: ConeCurve, network: Network, sections: Sections) -> list[OpenEnd]:
     """Return the ends that have no cap."""
     paths = curve.paths_from(ends=True)
-    rows = np.flatnonzero(curve.owner >= 0)
+    rows = np.flatnonzero(curve.node_of_section[sections.section] >= 0)
     tree, found = cKDTree(network.points[rows]), []
     for path in paths:
         end, radius = int(path[0]), float(curve.radii[path[0]])
@@ -63,7 +80,7 @@ def open_ends(curve: ConeCurve, network: Network) -> list[OpenEnd]:
     return found
 
 
-def _facing_pairs(curve: ConeCurve, ends: list[OpenEnd]) -> list[tuple[int, int]]:
+def _facing_pairs(curve: ConeCurve, ends: list[OpenEnd], widest: float) -> list[tuple[int, int]]:
     """Return pairs of open ends that look at each other, the nearest and straightest first, each end once."""
     found = []
     for number, one in enumerate(ends):
@@ -71,7 +88,7 @@ def _facing_pairs(curve: ConeCurve, ends: list[OpenEnd]) -> list[tuple[int, int]
             gap = curve.nodes[other.node] - curve.nodes[one.node]
             width, radii = float(np.linalg.norm(gap)), curve.radii[[one.node, other.node]]
             facing = float(one.direction @ gap), -float(other.direction @ gap)
-            near = 0 < width < WIDEST * radii.sum() and radii.max() < ALIKE * radii.min()
+            near = 0 < width < widest * radii.sum() and radii.max() < ALIKE * radii.min()
             if near and min(facing) > FACING * width:
                 found.append((width * 3 - sum(facing), one.node, other.node))
     pairs: list[tuple[int, int]] = []
@@ -81,13 +98,13 @@ def _facing_pairs(curve: ConeCurve, ends: list[OpenEnd]) -> list[tuple[int, int]
     return pairs
 
 
-def _facing_side(curve: ConeCurve, end: OpenEnd) -> int | None:
-    """Return the node of another limb that an open end looks at, None where it looks at nothing near."""
+def _facing_side(curve: ConeCurve, end: OpenEnd, widest: float) -> int | None:
+    """Return the node of another branch that an open end looks at, None where it looks at nothing near."""
     gap = curve.nodes - curve.nodes[end.node]
     width = np.maximum(np.linalg.norm(gap, axis=1), np.finfo(float).tiny)
     cosine = gap @ end.direction / width
-    near = (cosine > FACING_SIDE) & (width < curve.radii + WIDEST_SIDE * curve.radii[end.node])
-    near[list(end.limb)] = False
+    near = (cosine > FACING_SIDE) & (width < curve.radii + widest * curve.radii[end.node])
+    near[list(end.branch)] = False
     cost = np.where(near, (width - curve.radii) * (2 - cosine), np.inf)
     return int(cost.argmin()) if near.any() else None
 
@@ -102,5 +119,5 @@ def _with_edges(curve: ConeCurve, pairs: list[tuple[int, int]]) -> ConeCurve:
         nodes = (1 - share) * curve.nodes[a] + share * curve.nodes[b]
         radii = ((1 - share) * curve.radii[a] + share * curve.radii[b])[:, 0]
         links: Indices = np.stack([chain[:-1], chain[1:]], axis=1)
-        curve = with_nodes(curve, nodes, radii, links, np.full(between, curve.levels[a], np.int32))
+        curve = with_nodes(curve, nodes, radii, links, np.full(between, curve.levels[a], np.int32), bridge=True)
     return curve

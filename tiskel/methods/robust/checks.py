@@ -1,48 +1,113 @@
-"""What a user should know about a curve: where it may be wrong, and why."""
+"""Whether a curve is right: the score that fronts compete by, and the warnings, from one table of levels."""
+
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from tiskel.geometry import graph
-from tiskel.methods.robust.pipeline import Built
+from tiskel.arrays import Numbers, Points
+from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.solid import Solid
+from tiskel.methods.robust.curve import ConeCurve
+from tiskel.methods.robust.fit import ConeFit
+from tiskel.methods.robust.network import Network
+from tiskel.methods.trace import Sections
 
-OUTSIDE, OUTSIDE_SHARE = 0.25, 0.02  # winding number, share of the places
+# The table of levels. Found on the twenty-five shapes of the gallery, clean and degraded, and on seven scans.
+PLACES = 200  # on the curve, where winding numbers are asked for
+OUTSIDE_SCORE = 0.4  # winding number of a place that counts against a curve
+OUTSIDE_WARNING, OUTSIDE_SHARE = 0.25, 0.02  # winding number and share of places that are worth a warning
+THIN = 2.0  # spacings; thinner places say nothing of inside and outside
+FAR = 0.35  # local radii; points further from the cones count against a curve
 FLAT, FLAT_SHARE = 0.15, 0.2  # ratio of how much normals spread both ways across the curve; share of such points
 SPARSE, SPARSE_SHARE = 1.5, 0.05  # spacings in a radius; share of such nodes
 SHORT = 1.0  # largest radii that a curve is long at least, to be one
 
 
-def doubts(built: Built) -> tuple[str, ...]:
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A fitted curve, and what it is judged by.
+
+    Attributes
+    ----------
+    curve : ConeCurve
+        The curve.
+    fit : ConeFit
+        Where the points stand on it.
+    sections : Sections
+        What the front found, with the sections of missed branches.
+    network : Network
+        The neighbour graph.
+    solid : Solid
+        The body inside the cloud.
+    gaps : int
+        How many gaps were bridged.
+    """
+
+    curve: ConeCurve
+    fit: ConeFit
+    sections: Sections
+    network: Network
+    solid: Solid
+    gaps: int
+
+    @cached_property
+    def places(self) -> tuple[Points, Numbers]:
+        """The nodes and places along the curve (q, 3), and the radii there (q,)."""
+        curve = self.curve
+        if len(curve.edges) == 0:
+            return curve.nodes, curve.radii
+        between = curve_samples(curve, PLACES)
+        radii = curve.radii[curve.edges[between.edges]].mean(axis=1)
+        return np.concatenate([curve.nodes, between.points]), np.concatenate([curve.radii, radii])
+
+    @cached_property
+    def winding(self) -> Numbers:
+        """Winding numbers (q,) of the body about these places."""
+        return self.solid.oriented.winding_numbers(self.places[0])
+
+    @cached_property
+    def misfit(self) -> float:
+        """The share of places on the curve outside the body and of points far from its cones.
+
+        And one for every loop more or less than the body has handles. Where the
+        body is as thin as the points are apart, nothing is said.
+        """
+        off = 0 if self.solid.handles is None else abs(self.curve.loops - self.solid.handles)
+        spacing = self.network.spacing
+        outside = (self.winding < OUTSIDE_SCORE) & (self.places[1] > THIN * spacing)
+        far = np.abs(self.fit.residual) > np.maximum(FAR * self.fit.radii, spacing)
+        return off + float(outside.mean()) + (float(far.mean()) if len(far) else 0.0)
+
+
+def warnings_of(found: Candidate) -> tuple[str, ...]:
     """Return the warnings of a curve, each what, how much, and what to do."""
-    return tuple(
-        warning
-        for warning in (_debris(built), _sparse(built), _short(built), _flat(built), _gaps(built), *_body(built))
-        if warning
-    )
+    told = (_small(found), _sparse(found), _short(found), _flat(found), _gaps(found), *_body(found))
+    return tuple(warning for warning in told if warning)
 
 
-def _debris(built: Built) -> str:
-    left_out = int((built.curve.owner < 0).sum())
+def _small(found: Candidate) -> str:
+    left_out = int((found.curve.node_of_section[found.sections.section] < 0).sum())
     return f"{left_out} points in small separate parts were left out" if left_out else ""
 
 
-def _sparse(built: Built) -> str:
-    thin = float((built.curve.radii < SPARSE * built.network.spacing).mean())
+def _sparse(found: Candidate) -> str:
+    thin = float((found.curve.radii < SPARSE * found.network.spacing).mean())
     few = f"{thin:.0%} of the nodes are thinner than {SPARSE} spacings of the points: too few points for the thickness"
     return few if thin > SPARSE_SHARE else ""
 
 
-def _short(built: Built) -> str:
-    curve = built.curve
-    length = float(graph.edge_lengths(curve.nodes, curve.edges).sum())
-    if len(curve.edges) and length >= SHORT * curve.radii.max():
+def _short(found: Candidate) -> str:
+    curve = found.curve
+    if len(curve.edges) and curve.length >= SHORT * curve.radii.max():
         return ""
     return "the body is hardly longer than it is thick: its curve skeleton says little about it"
 
 
-def _flat(built: Built) -> str:
+def _flat(found: Candidate) -> str:
     """Find the nodes whose points' normals hardly turn about the curve, as those of a plate do not."""
-    node, normals = built.feet.node(built.curve), built.network.normals[built.feet.rows]
-    scatter = np.zeros((len(built.curve.nodes), 3, 3))
+    node, normals = found.fit.nodes, found.network.normals[found.fit.rows]
+    scatter = np.zeros((len(found.curve.nodes), 3, 3))
     np.add.at(scatter, node, normals[:, :, None] * normals[:, None, :])
     _, across, most = np.linalg.eigvalsh(scatter).T
     flat = (across < FLAT * most)[node]
@@ -53,16 +118,16 @@ def _flat(built: Built) -> str:
     return told if share > FLAT_SHARE else ""
 
 
-def _gaps(built: Built) -> str:
-    return f"{built.gaps} gaps in the scan were bridged by straight lines" if built.gaps else ""
+def _gaps(found: Candidate) -> str:
+    return f"{found.gaps} gaps in the scan were bridged by straight lines" if found.gaps else ""
 
 
-def _body(built: Built) -> tuple[str, ...]:
+def _body(found: Candidate) -> tuple[str, ...]:
     """Compare the curve with the solid inside the cloud, where there is one."""
-    if not built.body.trusted:
+    if not found.solid.trusted:
         return ()
-    handles, loops = built.body.handles, built.loops
-    outside = float((built.winding < OUTSIDE).mean())
+    handles, loops = found.solid.handles, found.curve.loops
+    outside = float((found.winding < OUTSIDE_WARNING).mean())
     return (
         "" if handles is None or handles <= loops else f"the body has {handles} handles, the curve only {loops} loops",
         "" if handles is None or handles >= loops else f"the curve has {loops} loops, the body only {handles} handles",

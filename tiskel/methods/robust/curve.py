@@ -1,60 +1,50 @@
 """A curve of round cones while it is being built, and how its graph is changed."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tiskel.arrays import Indices, Numbers, Points, resolved
-from tiskel.geometry import graph
+from tiskel.arrays import Indices, Mask, Numbers, Points, resolved
+from tiskel.geometry.graph import CurveGraph, tidy_edges
 
 
-@dataclass(frozen=True)
-class ConeCurve:
-    """Nodes with radii, joined by edges: every edge is a round cone.
+@dataclass(frozen=True, eq=False)
+class ConeCurve(CurveGraph):
+    """A curve graph whose edges are round cones, and what of the cloud its nodes stand for.
+
+    The cloud is labelled once, by its sections; when nodes become one, only the
+    sections change hands.
 
     Attributes
     ----------
-    nodes : (v, 3); radii : (v,); edges : (e, 2) int32, lower node first, each once.
-    levels : (v,) int32, the stride of the front that a node comes from.
-    owner : (n,) int32, the node each point of the cloud belongs to, -1 for debris.
+    levels : (v,) int32
+        The bin of the front that a node comes from.
+    node_of_section : (s + 1,) int32
+        The node that every section belongs to; last -1, for points without a section.
+    section_sizes : (s,) float64
+        The number of points of every section.
     """
 
-    nodes: Points
-    radii: Numbers
-    edges: Indices
-    levels: Indices
-    owner: Indices
+    levels: Indices = field(kw_only=True)
+    node_of_section: Indices = field(kw_only=True)
+    section_sizes: Numbers = field(kw_only=True)
 
     @property
-    def counts(self) -> Numbers:
-        """How many points each node has."""
-        return np.bincount(self.owner[self.owner >= 0], minlength=len(self.nodes)).astype(float)
-
-    @property
-    def degrees(self) -> Indices:
-        return graph.degrees(len(self.nodes), self.edges)
-
-    def around(self) -> list[list[int]]:
-        return graph.neighbour_lists(len(self.nodes), self.edges)
-
-    def branches(self) -> tuple[Indices, ...]:
-        return graph.branches(len(self.nodes), self.edges)
+    def point_counts(self) -> Numbers:
+        """(v,) the number of points of every node."""
+        owned = self.node_of_section[:-1]
+        known = owned >= 0
+        return np.asarray(np.bincount(owned[known], self.section_sizes[known], minlength=len(self.nodes)), float)
 
     def paths_from(self, *, ends: bool) -> list[Indices]:
-        """Return every branch that starts at an end (or at a joint), from there; both ways where both are."""
+        """Return every branch that starts at an end (or at a junction), from there; both ways where both are."""
         degree = self.degrees
-        both = [path for branch in self.branches() if len(branch) > 1 for path in (branch, branch[::-1])]
+        both = [path for branch in self.branches if len(branch) > 1 for path in (branch, branch[::-1])]
         return [path for path in both if (degree[path[0]] == 1 if ends else degree[path[0]] > 2)]
 
     def heading(self, path: Indices) -> Numbers:
         """Return the direction that a path from an end looks in, taken over two edges where there are two."""
         return np.asarray(self.nodes[path[0]] - self.nodes[path[min(2, len(path) - 1)]])
-
-
-def tidy_edges(edges: Indices) -> Indices:
-    """Return edges with the lower node first, each once, none from a node to itself."""
-    ordered = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
-    return np.unique(ordered[ordered[:, 0] != ordered[:, 1]], axis=0).reshape(-1, 2)
 
 
 def keeps_loops(curve: ConeCurve, into: Indices) -> bool:
@@ -67,25 +57,52 @@ def keeps_loops(curve: ConeCurve, into: Indices) -> bool:
 def contract_nodes(curve: ConeCurve, into: Indices, *, mean: bool = False) -> ConeCurve:
     """Replace every node by another; that one stays where it is, or goes to the mean of all it stands for."""
     into = resolved(into)
-    kept, name = np.unique(into, return_inverse=True)
+    kept, inverse = np.unique(into, return_inverse=True)
+    name = inverse.astype(np.int32)
     nodes, radii = curve.nodes[kept], curve.radii[kept]
     if mean:
         each = np.bincount(name, minlength=len(kept))
         nodes = np.stack([np.bincount(name, x, minlength=len(kept)) / each for x in curve.nodes.T], axis=1)
         radii = np.zeros(len(kept))
         np.maximum.at(radii, name, curve.radii)
-    return ConeCurve(
-        nodes, radii, tidy_edges(name[curve.edges].astype(np.int32)), curve.levels[kept],
-        np.where(curve.owner < 0, -1, name[curve.owner]).astype(np.int32),
+    return replace(
+        curve, nodes=nodes, radii=radii, edges=tidy_edges(name[curve.edges]),
+        bridged=_bridged(name[curve.edges], curve), levels=curve.levels[kept],
+        node_of_section=np.append(name, np.int32(-1))[curve.node_of_section],
     )  # fmt: skip
 
 
-def with_nodes(curve: ConeCurve, nodes: Points, radii: Numbers, edges: Indices, levels: Indices) -> ConeCurve:
-    """Add nodes, and edges that may name old nodes and, from len(curve.nodes), new ones."""
+def _bridged(renamed: Indices, curve: ConeCurve) -> Mask:
+    """Return which edges are bridges under new names of their nodes: those that stand for nothing but bridges."""
+    ordered = np.sort(renamed, axis=1)
+    apart = ordered[:, 0] != ordered[:, 1]
+    edges, number = np.unique(ordered[apart], axis=0, return_inverse=True)
+    measured = np.bincount(number.ravel(), ~curve.bridged[apart], minlength=len(edges))
+    return np.asarray(measured == 0)
+
+
+def without_path(curve: ConeCurve, path: Indices) -> ConeCurve:
+    """Contract a branch from its end into the node that it hangs on, the last of its path."""
+    into = np.arange(len(curve.nodes), dtype=np.int32)
+    into[path[:-1]] = path[-1]
+    return contract_nodes(curve, into)
+
+
+def with_nodes(
+    curve: ConeCurve, nodes: Points, radii: Numbers, edges: Indices, levels: Indices, *, bridge: bool = False
+) -> ConeCurve:
+    """Add nodes, and edges that may name old nodes and, from len(curve.nodes), new ones.
+
+    An edge that is there already stays what it is.
+    """
+    tidy = tidy_edges(np.concatenate([curve.edges, np.reshape(edges, (-1, 2))]))
+    known = dict(zip(map(tuple, curve.edges.tolist()), curve.bridged.tolist(), strict=True))
+    bridged: list[bool] = [known.get((a, b), bridge) for a, b in tidy.tolist()]
     return replace(
         curve,
         nodes=np.concatenate([curve.nodes, np.reshape(nodes, (-1, 3))]),
         radii=np.concatenate([curve.radii, radii]),
-        edges=tidy_edges(np.concatenate([curve.edges, np.reshape(edges, (-1, 2))])),
+        edges=tidy,
+        bridged=np.array(bridged, bool),
         levels=np.concatenate([curve.levels, levels]).astype(np.int32),
     )

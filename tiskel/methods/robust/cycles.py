@@ -8,11 +8,12 @@ inside. What is inside, the winding number tells, which closes holes.
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask
-from tiskel.geometry.oriented import Surface
+from tiskel.arrays import Indices, Mask, Numbers
+from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes
 from tiskel.methods.robust.network import Network
 from tiskel.methods.robust.sections import centred
+from tiskel.methods.trace import Sections
 
 ROUNDS = 100  # of contraction; each takes away at least one cycle
 ALONG = np.array([0.25, 0.5, 0.75])  # where a line between two sides is probed
@@ -23,7 +24,9 @@ SMALL = 4  # nodes: hardly a loop of the body; a line inside for the most part, 
 CLOSE = 0.5  # spacings; such nodes are one
 
 
-def without_filled_cycles(curve: ConeCurve, network: Network, surface: Surface, *, fitted: bool) -> ConeCurve:
+def without_filled_cycles(
+    curve: ConeCurve, network: Network, sections: Sections, solid: Solid, *, fitted: bool
+) -> ConeCurve:
     """Contract the cycles that bound a disc inside the body.
 
     Nodes of sections are centred anew after that. Fitted ones are where they
@@ -34,19 +37,23 @@ def without_filled_cycles(curve: ConeCurve, network: Network, surface: Surface, 
         if not cycles:
             break
         rungs, owner = _rungs(cycles, curve)
-        one = _inside(rungs, owner, cycles, curve, surface)
+        start, stop = curve.nodes[rungs[:, 0]], curve.nodes[rungs[:, 1]]
+        probes = start[:, None] + ALONG[None, :, None] * (stop - start)[:, None]
+        winding = solid.oriented.winding_numbers(np.concatenate([probes.reshape(-1, 3), curve.nodes]))
+        across, own = winding[: probes.size // 3].reshape(-1, len(ALONG)), winding[probes.size // 3 :]
+        one = _inside(rungs, owner, cycles, curve, across, own, solid.oriented.spacing)
         one &= _overlapping(rungs, curve) if fitted else True
         filled = np.bincount(owner[~one], minlength=len(cycles)) == 0
         if not filled.any():
             break
         curve = contract_nodes(curve, _contraction(cycles, filled, rungs, owner, curve.levels), mean=fitted)
-        curve = curve if fitted else centred(curve, network)
+        curve = curve if fitted else centred(curve, network, sections)
     return curve
 
 
 def short_cycles(curve: ConeCurve) -> list[list[int]]:
     """Return the shortest cycles through each node and two neighbours on one side of the front, shortest first."""
-    around, levels = curve.around(), curve.levels.tolist()
+    around, levels = curve.neighbours, curve.levels.tolist()
     found: dict[tuple[int, ...], list[int]] = {}
     for node, others in enumerate(around):
         for i, a in enumerate(others):
@@ -78,7 +85,7 @@ def _way(around: list[list[int]], a: int, b: int, without: int) -> list[int]:
 
 def _rungs(cycles: list[list[int]], curve: ConeCurve) -> tuple[Indices, Indices]:
     """Return pairs (r, 2) of nodes across the cycles, the larger section first, and the cycle of each."""
-    size = curve.counts
+    size = curve.point_counts
     pairs, owner = [], []
     for number, cycle in enumerate(cycles):
         top = int(np.abs(curve.levels[cycle] - curve.levels[cycle[0]]).argmax())
@@ -91,17 +98,21 @@ def _rungs(cycles: list[list[int]], curve: ConeCurve) -> tuple[Indices, Indices]
     return np.array(pairs, np.int32), np.array(owner, np.int32)
 
 
-def _inside(rungs: Indices, owner: Indices, cycles: list[list[int]], curve: ConeCurve, surface: Surface) -> Mask:
-    """Tell which lines stay inside; towards a fragment only up to its half."""
+def _inside(
+    rungs: Indices, owner: Indices, cycles: list[list[int]], curve: ConeCurve, winding: Numbers, own: Numbers,
+    spacing: float,
+) -> Mask:  # fmt: skip
+    """Tell which lines stay inside; towards a fragment only up to its half.
+
+    winding (r, 3) are the winding numbers along each line, own (v,) those of
+    the nodes.
+    """
     start, stop = curve.nodes[rungs[:, 0]], curve.nodes[rungs[:, 1]]
-    probes = start[:, None] + ALONG[None, :, None] * (stop - start)[:, None]
-    winding = surface.winding_numbers(probes.reshape(-1, 3)).reshape(-1, len(ALONG))
-    own = surface.winding_numbers(curve.nodes)
     level = SHARE_INSIDE * np.array([np.clip(np.median(own[cycle]), LOWEST, HIGHEST) for cycle in cycles])
-    size = curve.counts
+    size = curve.point_counts
     fragment = size[rungs[:, 1]] < FRAGMENT * size[rungs[:, 0]]
     winding[fragment, -1] = np.inf
-    close = np.linalg.norm(start - stop, axis=1) < CLOSE * surface.spacing
+    close = np.linalg.norm(start - stop, axis=1) < CLOSE * spacing
     inside = (winding > level[owner][:, None]).all(axis=1) | close
     small = np.array([len(cycle) for cycle in cycles])[owner] <= SMALL
     return np.asarray(inside | small & (fragment | (winding.mean(axis=1) > level[owner])))

@@ -1,23 +1,25 @@
 """Round cones fitted to a cloud: where nodes and radii have to be, so that the surface passes through the points.
 
-The residual of a point is its distance to the foot on its edge less the radius
-there. Least squares over all points (Gauss-Newton; Huber weights), with nodes
-held to the line of their neighbours and radii to the mean of theirs. Arcs and
-caps determine their circles and balls, so that scans with holes are centred and
-ends come to lie in the middle of the last ball.
+As in Thiery, Guy and Boubekeur, Sphere-meshes, SIGGRAPH Asia 2013, the model is a
+graph of balls whose edges are hulls of two of them. The residual of a point is its
+distance to the foot on its edge less the radius there. Least squares over all
+points (Gauss-Newton; Huber weights), with nodes held to the line of their
+neighbours and radii to the mean of theirs. Arcs and caps determine their circles
+and balls, so that scans with holes are centred and ends come to lie in the middle
+of the last ball.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
 
 from tiskel.arrays import Indices, Numbers, Points
-from tiskel.geometry import graph
 from tiskel.geometry.solve import BACKENDS
 from tiskel.methods.robust.curve import ConeCurve
 
-STRAIGHT, EVEN = 0.1, 0.3  # weights of straightness and of even radii, each per node as heavy as its share of points
+EVEN = 0.3  # weight of even radii, per node as heavy as its share of the points
 DAMPING, HOLD = 0.01, 0.005  # weights of a step, and of the place where the fit began
 OUTLYING = 2.0  # residuals beyond so many deviations count less
 MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
@@ -25,16 +27,25 @@ HOPS = 2  # edges so near to a point's own node may be its edge
 STEP, SHRINK, GROW, THINNEST = 0.5, 0.5, 2.0, 0.1  # limits of a step, in radii; least radius, in the median radius
 
 
-@dataclass(frozen=True)
-class Feet:
-    """Where points stand on a curve.
+@dataclass(frozen=True, eq=False)
+class ConeFit:
+    """A curve of round cones, and the foot points of the cloud on it.
 
     Attributes
     ----------
-    rows : (p,) their rows in the cloud; edge : (p,); share : (p,) of the way along it.
-    residual : (p,) distance to the surface of the cone, negative inside.
+    curve : ConeCurve
+        The curve.
+    rows : (p,) int32
+        Rows of the cloud that have a foot point.
+    edge : (p,) int32
+        The edge that it is on.
+    share : (p,) float64
+        How much of the way along the edge.
+    residual : (p,) float64
+        Distance of the point to the surface of the cone, negative inside.
     """
 
+    curve: ConeCurve
     rows: Indices
     edge: Indices
     share: Numbers
@@ -45,41 +56,47 @@ class Feet:
         """The robust standard deviation of the residuals."""
         return MAD * float(np.median(np.abs(self.residual))) if len(self.rows) else 0.0
 
-    def places(self, curve: ConeCurve) -> Points:
-        """Return the feet (p, 3)."""
-        first, last = curve.edges[self.edge].T
-        return np.asarray(curve.nodes[first] + self.share[:, None] * (curve.nodes[last] - curve.nodes[first]))
+    @cached_property
+    def places(self) -> Points:
+        """(p, 3) the foot points."""
+        first, last = self.curve.edges[self.edge].T
+        nodes = self.curve.nodes
+        return np.asarray(nodes[first] + self.share[:, None] * (nodes[last] - nodes[first]))
 
-    def radii(self, curve: ConeCurve) -> Numbers:
-        """Return (p,) the radii of the cones there."""
-        first, last = curve.edges[self.edge].T
-        return np.asarray((1 - self.share) * curve.radii[first] + self.share * curve.radii[last])
+    @cached_property
+    def radii(self) -> Numbers:
+        """(p,) the radii of the cones there."""
+        first, last = self.curve.edges[self.edge].T
+        return np.asarray((1 - self.share) * self.curve.radii[first] + self.share * self.curve.radii[last])
 
-    def node(self, curve: ConeCurve) -> Indices:
-        """Return (p,) the nearer end of the edge."""
-        return np.asarray(curve.edges[self.edge, (self.share > 0.5).astype(int)])
+    @cached_property
+    def nodes(self) -> Indices:
+        """(p,) the nearer end of the edge."""
+        return np.asarray(self.curve.edges[self.edge, (self.share > 0.5).astype(int)])
 
 
-def fit_cones(curve: ConeCurve, points: Points, rounds: int) -> tuple[ConeCurve, Feet]:
-    """Return the curve fitted to the points (n, 3) of the cloud, and their feet on it."""
+def fit_cones(curve: ConeCurve, points: Points, section: Indices, *, rounds: int, straightness: float) -> ConeFit:
+    """Return the curve fitted to the points (n, 3) of the cloud, and their foot points.
+
+    section (n,) is the section of each point; straightness the weight that
+    holds a node between its two neighbours.
+    """
     if len(curve.edges) == 0:
         none = np.zeros(0)
-        return curve, Feet(none.astype(np.int32), none.astype(np.int32), none, none)
-    nearby = nearby_edges(curve)
-    owned = np.flatnonzero(curve.owner >= 0)
-    rows: Indices = owned[(nearby[curve.owner[owned]] >= 0).any(axis=1)].astype(np.int32)
-    lists, start = curve.owner[rows], curve.nodes
+        return ConeFit(curve, none.astype(np.int32), none.astype(np.int32), none, none)
+    owner, nearby, start = curve.node_of_section[section], nearby_edges(curve), curve.nodes
+    owned = np.flatnonzero(owner >= 0)
+    rows: Indices = owned[(nearby[owner[owned]] >= 0).any(axis=1)].astype(np.int32)
     thinnest = THINNEST * np.median(curve.radii)
     curve = replace(curve, radii=np.maximum(curve.radii, thinnest))
     for _ in range(rounds):
-        step = _step(curve, points, feet(curve, points, rows, lists, nearby), start)
+        step = _step(foot_points(curve, points, rows, owner[rows], nearby), points, start, straightness)
         length = np.linalg.norm(step[:, :3], axis=1)
         within = np.minimum(1, STEP * curve.radii / np.maximum(length, np.finfo(float).tiny))
-        radii = np.clip(
-            curve.radii + step[:, 3], np.maximum(SHRINK * curve.radii, thinnest), GROW * curve.radii
-        )  # fmt: skip
+        least = np.maximum(SHRINK * curve.radii, thinnest)
+        radii = np.clip(curve.radii + step[:, 3], least, GROW * curve.radii)
         curve = replace(curve, nodes=curve.nodes + within[:, None] * step[:, :3], radii=radii)
-    return curve, feet(curve, points, rows, lists, nearby)
+    return foot_points(curve, points, rows, owner[rows], nearby)
 
 
 def nearby_edges(curve: ConeCurve) -> Indices:
@@ -98,37 +115,32 @@ def nearby_edges(curve: ConeCurve) -> Indices:
     return out
 
 
-def feet(curve: ConeCurve, points: Points, rows: Indices, lists: Indices, candidates: Indices) -> Feet:
-    """Return the feet of some points, each on the edge of its list of candidates (l, w) whose surface is nearest."""
-    return _placed(curve, points, rows, lists, candidates, signed=False)
+def foot_points(
+    curve: ConeCurve, points: Points, rows: Indices, lists: Indices, candidates: Indices, *, signed: bool = False
+) -> ConeFit:
+    """Return the foot points of some points, each on the edge whose surface is nearest.
 
-
-def distances(curve: ConeCurve, points: Points, rows: Indices, edges: Indices) -> Numbers:
-    """Return (p,) the signed distances of some points to the union of the cones of some edges, negative inside."""
-    return _placed(curve, points, rows, np.zeros(len(rows), np.int32), edges[None], signed=True).residual
-
-
-def _placed(
-    curve: ConeCurve, points: Points, rows: Indices, lists: Indices, candidates: Indices, signed: bool
-) -> Feet:  # fmt: skip
+    Of the edges in its list of candidates (l, w); nearest in size, or, signed,
+    where it lies deepest inside.
+    """
     from tiskel.kernels.cones import cone_feet
 
     count = len(rows)
     edge, share, residual = np.empty(count, np.int32), np.empty(count), np.empty(count)
     tables = [np.ascontiguousarray(table, np.int32) for table in (rows, lists, candidates)]
     cone_feet(points, *tables, curve.nodes, curve.radii, curve.edges, signed, edge, share, residual)
-    return Feet(tables[0], edge, share, residual)
+    return ConeFit(curve, tables[0], edge, share, residual)
 
 
-def _step(curve: ConeCurve, points: Points, at: Feet, start: Points) -> Numbers:
+def _step(fit: ConeFit, points: Points, start: Points, straightness: float) -> Numbers:
     """Return (v, 4) the Gauss-Newton step of nodes and radii."""
-    count = len(curve.nodes)
-    heavy = len(at.rows) / count
-    terms = [_data(curve, points, at), *_smoothness(curve, heavy)]
+    count = len(fit.curve.nodes)
+    heavy = len(fit.rows) / count
+    terms = [_data(fit, points), *_smoothness(fit.curve, heavy, straightness)]
     held = np.tile([DAMPING + HOLD] * 3 + [DAMPING], count) * heavy
     matrix = sparse.diags_array(held, format="csc")
     right = np.zeros(4 * count)
-    right.reshape(count, 4)[:, :3] = HOLD * heavy * (start - curve.nodes)
+    right.reshape(count, 4)[:, :3] = HOLD * heavy * (start - fit.curve.nodes)
     for unknowns, blocks, sides in terms:
         width = unknowns.shape[1]
         where = np.repeat(unknowns, width, axis=1).ravel(), np.tile(unknowns, (1, width)).ravel()
@@ -140,26 +152,26 @@ def _step(curve: ConeCurve, points: Points, at: Feet, start: Points) -> Numbers:
 Term = tuple[Indices, Numbers, Numbers]  # unknowns (t, k), blocks (t, k, k) of the matrix, right-hand sides (t, k)
 
 
-def _data(curve: ConeCurve, points: Points, at: Feet) -> Term:
+def _data(fit: ConeFit, points: Points) -> Term:
     """Return the residuals' share of the normal equations, summed by edge."""
-    out = points[at.rows] - at.places(curve)
+    out = points[fit.rows] - fit.places
     # A point on the axis pulls in no direction.
-    out /= np.maximum(np.linalg.norm(out, axis=1), 1e-9 * curve.radii.max())[:, None]
-    one, other = (1 - at.share)[:, None], at.share[:, None]
+    out /= np.maximum(np.linalg.norm(out, axis=1), 1e-9 * fit.curve.radii.max())[:, None]
+    one, other = (1 - fit.share)[:, None], fit.share[:, None]
     slope = -np.concatenate([one * out, one, other * out, other], axis=1)
-    weight = 1 / np.maximum(1, np.abs(at.residual) / max(OUTLYING * at.deviation, np.finfo(float).tiny))
-    order = np.argsort(at.edge, kind="stable")
-    edge, starts = np.unique(at.edge[order], return_index=True)
+    weight = 1 / np.maximum(1, np.abs(fit.residual) / max(OUTLYING * fit.deviation, np.finfo(float).tiny))
+    order = np.argsort(fit.edge, kind="stable")
+    edge, starts = np.unique(fit.edge[order], return_index=True)
     weighted = (weight[:, None] * slope)[order]
     blocks = np.add.reduceat(weighted[:, :, None] * slope[order][:, None, :], starts)
-    sides = -np.add.reduceat(weighted * at.residual[order, None], starts)
-    ends = curve.edges[edge]
+    sides = -np.add.reduceat(weighted * fit.residual[order, None], starts)
+    ends = fit.curve.edges[edge]
     return np.concatenate([4 * ends[:, :1] + np.arange(4), 4 * ends[:, 1:] + np.arange(4)], axis=1), blocks, sides
 
 
-def _smoothness(curve: ConeCurve, heavy: float) -> list[Term]:
+def _smoothness(curve: ConeCurve, heavy: float, straightness: float) -> list[Term]:
     """Return the terms that hold every node of two neighbours between them."""
-    triples = graph.passages(len(curve.nodes), curve.edges)
+    triples = curve.passages
     if len(triples) == 0:
         return []
     values = np.concatenate([curve.nodes, curve.radii[:, None]], axis=1)
@@ -168,7 +180,7 @@ def _smoothness(curve: ConeCurve, heavy: float) -> list[Term]:
     bend = np.stack([after / whole, -np.ones(len(triples)), before / whole], axis=1)
     blocks = bend[:, :, None] * bend[:, None, :]
     terms = []
-    for axis, weight in enumerate([STRAIGHT] * 3 + [EVEN]):
+    for axis, weight in enumerate([straightness] * 3 + [EVEN]):
         off = (bend * values[triples, axis]).sum(axis=1)
         terms.append((4 * triples + axis, weight * heavy * blocks, -weight * heavy * bend * off[:, None]))
     return terms

@@ -1,13 +1,14 @@
-"""Which points are neighbours along the surface, and what the neighbourhood says about it."""
+"""Which points are neighbours along the surface, and what the neighbourhoods say: prepared once for a cloud."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
-from tiskel.geometry.oriented import Surface
+from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.rings import Rings
 
 NORMAL_NEIGHBOURS = 12  # the point included; the plane through them
@@ -19,15 +20,31 @@ ALONG_NORMALS = 0.75  # cosine: such a step leaves the surface at both of its en
 
 @dataclass(frozen=True)
 class Network:
-    """A cloud and its neighbour graph.
+    """A cloud in its own axes, and its neighbour graph.
 
     Attributes
     ----------
-    points : (n, 3); normals : (n, 3), of unit length, not oriented; areas, spacings : (n,).
-    neighbours : (n, k) int32, by distance, the point itself first; kept : (n, k) bool, which of them count.
-    edges : (e, 2) int32, lower row first; lengths : (e,).
+    axes : (3, 3) float64
+        The cloud's own axes as rows: points = given points @ axes.T.
+    points : (n, 3) float64
+        The points.
+    normals : (n, 3) float64
+        Of unit length, not oriented.
+    areas : (n,) float64
+        Of the surface that each point stands for.
+    spacings : (n,) float64
+        How far the points are apart about each.
+    neighbours : (n, k) int32
+        By distance, the point itself first.
+    kept : (n, k) bool
+        Which of them are neighbours along the surface.
+    edges : (e, 2) int32
+        Pairs of neighbours along the surface, lower row first.
+    lengths : (e,) float64
+        How long they are.
     """
 
+    axes: Numbers
     points: Points
     normals: Points
     areas: Numbers
@@ -37,8 +54,9 @@ class Network:
     edges: Indices
     lengths: Numbers
 
-    @property
+    @cached_property
     def spacing(self) -> float:
+        """The median spacing."""
         return float(np.median(self.spacings))
 
     def graph(self, weights: Numbers) -> sparse.csr_array:
@@ -46,8 +64,9 @@ class Network:
         count = len(self.points)
         return sparse.coo_array((weights, (self.edges[:, 0], self.edges[:, 1])), shape=(count, count)).tocsr()
 
+    @cached_property
     def averaging(self) -> sparse.csr_array:
-        """Return the matrix (n, n) that replaces values by their mean over a point and its neighbours."""
+        """The matrix (n, n) that replaces values by their mean over a point and its neighbours."""
         half = self.graph(np.ones(len(self.edges)))
         whole = sparse.csr_array(half + half.T + sparse.eye_array(len(self.points), format="csr"))
         return sparse.csr_array(sparse.diags_array(1 / whole.sum(axis=1)) @ whole)
@@ -59,10 +78,10 @@ class Network:
         members[np.arange(members.shape[1]) < sizes[:, None]] = self.neighbours[self.kept]
         return Rings(members, sizes, np.zeros_like(sizes))
 
-    def oriented(self, contracted: Points) -> Surface:
-        """Return the surface with normals away from where the points (n, 3) contract to."""
+    def oriented(self, contracted: Points) -> OrientedCloud:
+        """Return the cloud with normals away from where the points (n, 3) contract to."""
         outward = np.einsum("ij,ij->i", self.points - contracted, self.normals)
-        return Surface(self.points, self.normals * np.where(outward < 0, -1.0, 1.0)[:, None], self.areas)
+        return OrientedCloud(self.points, self.normals * np.where(outward < 0, -1.0, 1.0)[:, None], self.areas)
 
 
 def own_axes(points: Points) -> Numbers:
@@ -76,8 +95,14 @@ def own_axes(points: Points) -> Numbers:
     return np.asarray(axes * np.where(((offset @ axes.T) ** 3).sum(axis=0) < 0, -1.0, 1.0)[:, None])
 
 
-def neighbour_network(points: Points, k: int) -> Network:
-    """Return the network of a cloud (n, 3) from its k nearest neighbours.
+def prepared(points: Points, k: int) -> Network:
+    """Return the network of a cloud (n, 3) in its own axes, see :func:`own_axes`."""
+    axes = own_axes(points)
+    return neighbour_network(np.ascontiguousarray(points @ axes.T), k, axes)
+
+
+def neighbour_network(points: Points, k: int, axes: Numbers | None = None) -> Network:
+    """Return the network of a cloud (n, 3) that lies in its axes, from its k nearest neighbours.
 
     Left out are steps that run along the normals at both ends, which would join
     the sides of a narrow gap, and steps to points that stand apart.
@@ -93,9 +118,9 @@ def neighbour_network(points: Points, k: int) -> Network:
     kept &= lengths <= FARTHEST * np.minimum(spacings[:, None], spacings[neighbours])
     kept[:, 0] = False
     edges, edge_lengths = _edges(neighbours, kept, lengths)
-    return Network(
-        points, normals, np.pi * squares[:, disc] / disc, spacings, neighbours, kept, edges, edge_lengths
-    )  # fmt: skip
+    own = np.eye(3) if axes is None else axes
+    areas = np.pi * squares[:, disc] / disc
+    return Network(own, points, normals, areas, spacings, neighbours, kept, edges, edge_lengths)
 
 
 def _edges(neighbours: Indices, kept: Mask, lengths: Numbers) -> tuple[Indices, Numbers]:

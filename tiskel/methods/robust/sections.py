@@ -6,26 +6,34 @@ from dataclasses import replace
 import numpy as np
 
 from tiskel.arrays import Indices
-from tiskel.geometry.graph import node_radii
-from tiskel.methods.robust.curve import ConeCurve, tidy_edges
-from tiskel.methods.robust.fronts import line_centres
+from tiskel.geometry.graph import node_radii, tidy_edges
+from tiskel.methods.robust.axes import line_centres
+from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.network import Network
+from tiskel.methods.trace import Sections
 
 
-def section_curve(network: Network, section: Indices, level: Indices) -> ConeCurve:
-    """Return the graph of sections (n,) with their levels (n,), nodes in the middle of their sections."""
-    count = int(section.max(initial=-1)) + 1
+def section_graph(network: Network, sections: Sections) -> ConeCurve:
+    """Return the graph of sections, nodes in the middle of them."""
+    section, count = sections.section, sections.count
     levels = np.zeros(count, np.int32)
-    levels[section[section >= 0]] = level[section >= 0]
-    edges = _links(section[network.edges], levels)
-    none = np.zeros(count)
-    return centred(ConeCurve(np.zeros((count, 3)), none, edges, levels, section), network)
+    levels[section[section >= 0]] = sections.level[section >= 0]
+    curve = ConeCurve(
+        nodes=np.zeros((count, 3)),
+        edges=_links(section[network.edges], levels),
+        radii=np.zeros(count),
+        levels=levels,
+        node_of_section=np.append(np.arange(count), -1).astype(np.int32),
+        section_sizes=np.bincount(section[section >= 0], minlength=count).astype(float),
+    )
+    return centred(curve, network, sections)
 
 
-def centred(curve: ConeCurve, network: Network) -> ConeCurve:
+def centred(curve: ConeCurve, network: Network, sections: Sections) -> ConeCurve:
     """Return the curve with every node in the middle of its points, and their mean distance as its radius."""
-    rows = np.flatnonzero(curve.owner >= 0)
-    label, count = curve.owner[rows], len(curve.nodes)
+    owner = curve.node_of_section[sections.section]
+    rows = np.flatnonzero(owner >= 0)
+    label, count = owner[rows], len(curve.nodes)
     nodes = line_centres(network.points[rows], network.normals[rows], label, count)[0]
     return replace(curve, nodes=nodes, radii=node_radii(nodes, network.points[rows], label))
 

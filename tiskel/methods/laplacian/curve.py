@@ -1,0 +1,50 @@
+"""The published curve of a contracted cloud (Cao et al. 2010, section 4), and its spurs taken away.
+
+A front of balls samples the contracted cloud, first foreign ring members join
+the samples, and edges of triangles collapse until none is left. Departure from
+print, unless ``raw``: spurs of a single edge shorter than the local radius go.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from tiskel.arrays import Indices, Points, diagonal
+from tiskel.errors import TiskelError
+from tiskel.geometry.graph import CurveGraph, node_radii
+from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edges
+from tiskel.methods.laplacian.sampling import front_samples
+from tiskel.methods.trace import MethodCurve, Trace
+from tiskel.params import LaplacianParams
+
+SINGLE = "the cloud contracted to a single node: it has no elongated part at this sampling radius"
+
+
+def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:
+    """Return the curve of a contracted cloud.
+
+    Raises TiskelError where the trace has no rings: it is another method's.
+    """
+    if trace.rings is None:
+        raise TiskelError("the contraction has no rings; run tiskel contract again with --method lbc or gls")
+    samples, owner = front_samples(trace.points, params.radius * diagonal(trace.cloud))
+    joined = inherited_edges(trace.rings, owner, trace.points[samples])
+    nodes, edges, into = collapse_triangles(trace.points[samples], joined)
+    node_of_point = into[owner][trace.survivor_of()]
+    graph = CurveGraph(nodes, edges, node_radii(nodes, trace.cloud, node_of_point))
+    warnings = (SINGLE,) if len(nodes) <= 1 else ()
+    if not params.raw:
+        graph, node_of_point = without_spurs(graph, trace.cloud, node_of_point)
+    return MethodCurve(graph, node_of_point, trace.points, warnings)
+
+
+def without_spurs(graph: CurveGraph, cloud: Points, node_of_point: Indices) -> tuple[CurveGraph, Indices]:
+    """Return the graph without spurs, and the node of every point; those of a spur go to the junction it hung on."""
+    into = graph.without_spurs()
+    kept = np.flatnonzero(into == np.arange(len(into)))
+    place = np.full(len(into), -1, np.int32)
+    place[kept] = np.arange(len(kept), dtype=np.int32)
+    left = (place[graph.edges] >= 0).all(axis=1)
+    nodes, owner = graph.nodes[kept], place[into[node_of_point]]
+    radii = node_radii(nodes, cloud, owner)
+    return replace(graph, nodes=nodes, edges=place[graph.edges[left]], radii=radii, bridged=graph.bridged[left]), owner
