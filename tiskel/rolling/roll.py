@@ -1,10 +1,8 @@
 """The stage ``roll``: a surface and a twist in, the way of a sphere over the surface out."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
@@ -14,6 +12,7 @@ from tiskel.rolling.equations import frame_turn, margin
 from tiskel.rolling.inputs import Inputs, constant, of_the_object, sphere_axes
 from tiskel.rolling.models import RollingModel, model_of, tube_of
 from tiskel.rolling.reading import path_lengths, read
+from tiskel.rolling.solution import solve
 from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate
 from tiskel.rolling.trajectory import RollStatus, Trajectory
 from tiskel.slicing.fitted import FittedSurface
@@ -22,8 +21,7 @@ from tiskel.surfaces.jets import ParametricSurface
 from tiskel.surfaces.nearest import even_places, nearest_place
 from tiskel.surfaces.tube import V_STOP
 
-USUAL_RADIUS, USUAL_DURATION = 0.25, 10.0  # of the surface's median radius; seconds
-STRIDE = 0.4  # radians that the sphere turns in a step of the solver at most: endings are looked for between steps
+USUAL_RADIUS = 0.25  # of the surface's median radius
 GRID = 72, 200  # places around and along where a sphere that does not fit is tried
 
 
@@ -43,33 +41,13 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     watched = endings(surface, model, params, radius)
     start = _start(surface, params)
     _check_start(surface, params, radius, start, watched)
-    solution = solve_ivp(
-        _Rate(model, params, inputs), (0.0, duration_of(params, inputs)), start, method="RK45", rtol=params.rtol,
-        atol=params.atol, max_step=longest_step(inputs, radius), events=watched, dense_output=True,
-    )  # fmt: skip
-    stop = float(solution.t[-1])
-    t = np.append(np.arange(0, stop - 0.5 / params.rate, 1 / params.rate), stop)
-    status, reason = _ending(solution, watched)
-    lengths = path_lengths(model, radius, solution.sol, stop)
+    solution = solve(_Rate(model, params, inputs), start, params, inputs, radius, watched)
+    lengths = path_lengths(model, radius, solution.at, float(solution.t[-1]))
     return Trajectory(
-        t, **read(surface, model, params.sigma, radius, solution.sol(t).T, params.start[4]), path_object=lengths[0],
-        path_sphere=lengths[1], status=status, reason=reason, evaluations=int(solution.nfev), radius=radius,
-        params=params, warnings=_warnings(inputs),
+        solution.t, **read(surface, model, params.sigma, radius, solution.states, params.start[4]),
+        path_object=lengths[0], path_sphere=lengths[1], status=solution.status, reason=solution.reason,
+        evaluations=solution.evaluations, radius=radius, params=params, warnings=_warnings(inputs),
     )  # fmt: skip
-
-
-def longest_step(inputs: Inputs, radius: float) -> float:
-    """Return the longest step in time that misses neither a row of the inputs nor a place where the run should end."""
-    fastest = float((np.linalg.norm(inputs.values[:, :3], axis=1)
-                     + np.linalg.norm(inputs.values[:, 3:], axis=1) / radius).max())  # fmt: skip
-    return min(inputs.longest_step, STRIDE / fastest) if fastest > 0 else inputs.longest_step
-
-
-def duration_of(params: RollParams, inputs: Inputs) -> float:
-    """Return the duration asked for, else that of the inputs, else the usual one."""
-    if params.duration is not None:
-        return params.duration
-    return float(inputs.t[-1]) if len(inputs.t) > 1 and inputs.t[-1] > 0 else USUAL_DURATION
 
 
 def median_radius(surface: ParametricSurface) -> float:
@@ -139,17 +117,6 @@ def _elsewhere(surface: ParametricSurface, params: RollParams, radius: float) ->
         return f"it fits nowhere, a sphere of less than {largest:.4g} somewhere"
     best = np.unravel_index(int(np.argmax(free)), free.shape)
     return f"start at u = {u[best]:.4g}, v = {v[best]:.4g}, or take a smaller one"
-
-
-def _ending(solution: Any, watched: list[Ending]) -> tuple[RollStatus, str]:
-    """Return why the solver stopped, in one word and in a sentence."""
-    stop = float(solution.t[-1])
-    if solution.status == 0:
-        return RollStatus.FINISHED, f"all of {stop:g} s"
-    for ending, times in zip(watched, solution.t_events or (), strict=False):
-        if solution.status == 1 and len(times):
-            return ending.status, f"{ending.what}, at t = {times[-1]:.4g} s"
-    return RollStatus.STUCK, f"{solution.message}, at t = {stop:.4g} s"
 
 
 def _warnings(inputs: Inputs) -> tuple[str, ...]:
