@@ -21,7 +21,7 @@ from tiskel.rolling.printed import shape_operators
 from tiskel.rolling.roll import roll
 from tiskel.rolling.sphere import orientation, rotation_of
 from tiskel.rolling.trajectory import RollStatus
-from tiskel.surfaces.analytic import EllipticCylinder, Plane, Torus, cylinder
+from tiskel.surfaces.analytic import Cone, EllipticCylinder, Plane, Torus, cylinder
 from tiskel.surfaces.forms import forms_of
 from tiskel.surfaces.jets import ParametricSurface
 from tiskel.surfaces.nearest import nearest_place
@@ -69,6 +69,14 @@ def test_both_contact_paths_are_equally_long_without_slip(side: Any) -> None:
     assert r.path_object == pytest.approx(r.path_sphere, rel=1e-5)
     slipping = roll(BENT, replace(p, velocity=(0.0, 0.05, 0.0)))
     assert abs(slipping.path_object - slipping.path_sphere) > 1e-2
+
+
+def test_ways_are_measured_closely_where_the_contact_hurries() -> None:
+    """A sphere wound up in the tip of a cone: even times alone measured ways that differed by 0.7 %."""
+    p = RollParams(side="inside", radius=0.1, omega=(-1.0, 0.3, 0), start=(0.1, 1, 0, 0, 0), duration=60.0, **SHARP)
+    r = roll(Cone(0.6), p)
+    assert r.status is RollStatus.TIGHT
+    assert r.path_object == pytest.approx(r.path_sphere, rel=1e-5)
 
 
 @pytest.mark.parametrize(("side", "sign"), [("outside", 1), ("inside", -1)])

@@ -42,7 +42,7 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     start = _start(surface, params)
     _check_start(surface, params, radius, start, watched)
     solution = solve(_Rate(model, params, inputs), start, params, inputs, radius, watched)
-    lengths = path_lengths(model, radius, solution.at, float(solution.t[-1]))
+    lengths = path_lengths(model, radius, solution)
     return Trajectory(
         solution.t, **read(surface, model, params.sigma, radius, solution.states, params.start[4]),
         path_object=lengths[0], path_sphere=lengths[1], status=solution.status, reason=solution.reason,

@@ -27,6 +27,8 @@ class Solution:
         Times on an even grid and the end, in seconds.
     states : (n, d) array
         The integrated states at these times.
+    steps : (k,) array
+        Times between the solver's steps, from 0 to the end.
     at : callable
         The states (d, m) at any times (m,).
     status : RollStatus
@@ -39,6 +41,7 @@ class Solution:
 
     t: Numbers
     states: Numbers
+    steps: Numbers
     at: Callable[[Numbers], Numbers]
     status: RollStatus
     reason: str
@@ -71,7 +74,8 @@ def solve(
         max_step=longest_step(inputs, radius), events=list(watched), dense_output=True,
     )  # fmt: skip
     t = even_times(float(solved.t[-1]), params.rate)
-    return Solution(t, solved.sol(t).T, solved.sol, *_ending(solved, watched), evaluations=int(solved.nfev))
+    status, reason = _ending(solved, watched)
+    return Solution(t, solved.sol(t).T, solved.t, solved.sol, status, reason, int(solved.nfev))
 
 
 def even_times(stop: float, rate: float) -> Numbers:
