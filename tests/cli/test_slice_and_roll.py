@@ -99,7 +99,9 @@ def test_options_reach_the_library(tiskel: Runner, skeleton: Path, tmp_path: Pat
     assert len(document["surfaces"][0]["sections"]) < 30
     more = ("--side", "inside", "--radius", 0.05, "--velocity", "0.01,0,0", "--twist", "sphere")
     start = ("--start", "0,pi/3,0,0,-pi")
-    run = json.loads(tiskel("roll", "f.json", "--json", "--duration", 1, *more, *start).stdout)["runs"][0]
+    exact = ("--rtol", 1e-3, "--atol", 1e-5)
+    run = json.loads(tiskel("roll", "f.json", "--json", "--duration", 1, *more, *start, *exact).stdout)["runs"][0]
+    assert (run["rtol"], run["atol"]) == (1e-3, 1e-5)
     assert (run["side"], run["radius"], run["twist"], run["time"]) == ("inside", 0.05, "sphere", 1.0)
     assert run["start"] == pytest.approx([0, np.pi / 3, 0, 0, -np.pi], abs=1e-12)
     near = tiskel("roll", "f.json", "--json", "--duration", 1, "--start-at", "1.2,0,0")
@@ -159,6 +161,7 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
         (("f.json", "--branch", "thumb"), "no surface of branch thumb; there are 0"),
         (("f.json", "--model", "own"), "--model must be one of global, local, both"),
         (("f.json", "--omega", "a,b,c"), "--omega needs 3 numbers"),
+        (("f.json", "--rtol", 0), "rtol must be a positive number, got 0"),
         (("f.json", "--velocity", "0,0,1"), "velocity along the normal must be 0"),
     ):
         assert said in one_error_line(tiskel("roll", *words))
@@ -178,9 +181,12 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
 def test_run_slices_and_rolls_and_says_where_it_cannot(tiskel: Runner, tmp_path: Path) -> None:
     tiskel("shape", "banana", "-n", 1500, "-o", "b.ply")
     words = ("--model", "both", "--side", "inside", "--sphere", 0.03, "--duration", 1, "--branch", "longest")
-    assert tiskel("run", "b.ply", "-o", "out", *words).returncode == 0
+    exact = ("--rtol", 1e-4, "--atol", 1e-7)
+    assert tiskel("run", "b.ply", "-o", "out", *words, *exact).returncode == 0
     made = {path.name for path in (tmp_path / "out").iterdir()}
     assert {"surface.json", "surface.ply", "slices.csv", "path.csv", "roll.json", "slices.png", "roll.png"} <= made
+    runs = json.loads((tmp_path / "out" / "roll.json").read_bytes())["runs"]
+    assert [(run["rtol"], run["atol"]) for run in runs] == [(1e-4, 1e-7)] * 2
     report = (tmp_path / "out" / "report.html").read_text()
     assert 'src="roll.png"' in report
     assert "inside" in report

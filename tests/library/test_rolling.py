@@ -79,6 +79,21 @@ def test_ways_are_measured_closely_where_the_contact_hurries() -> None:
     assert r.path_object == pytest.approx(r.path_sphere, rel=1e-5)
 
 
+BLADE: list[tuple[str, float, tuple[float, float, float], tuple[float, ...]]] = [
+    ("inside", 0.3, (-0.1, 0.9, 0.5), (5.82, 2.67, 0.1, 0.1, 0.0)),
+    ("outside", 10.0, (-0.1, -3.3, 0.7), (5.39, 0.51, 0.1, 0.1, 0.0)),
+]
+
+
+@pytest.mark.parametrize(("side", "radius", "omega", "start"), BLADE)
+def test_the_usual_tolerances_keep_a_sphere_from_slipping(side: Any, radius: float, omega: Any, start: Any) -> None:
+    """A thin blade, its edges of radius 0.005: ways that were 8 and 4 % apart at the published tolerances."""
+    p = RollParams(side=side, radius=radius, omega=omega, start=start, duration=6.0)
+    r = roll(EllipticCylinder(2.0, 0.1), p)
+    assert r.path_object == pytest.approx(r.path_sphere, rel=1e-4)
+    assert (r.as_dict()["rtol"], r.as_dict()["atol"]) == (1e-6, 1e-8)
+
+
 @pytest.mark.parametrize(("side", "sign"), [("outside", 1), ("inside", -1)])
 def test_once_around_a_straight_tube_takes_its_perimeter(side: Any, sign: int) -> None:
     """T = (L/R_s + 2 pi sigma)/|omega_y|; the ellipse 2 x 1 has L = 9.688448221."""

@@ -65,6 +65,8 @@ class Trajectory:
             "side": p.side,
             "twist": p.twist,
             "radius": self.radius,
+            "rtol": p.rtol,
+            "atol": p.atol,
             "start": self.state[0].tolist(),
             "end": self.state[-1].tolist(),
             "time": float(self.t[-1]),
