@@ -130,6 +130,18 @@ def test_inputs_from_a_table(tiskel: Runner, skeleton: Path, tmp_path: Path) -> 
     assert tiskel("roll", "f.json", "--inputs", "w.csv", "-o", "t.csv", "--strict").returncode == 1
 
 
+def test_slip_that_nobody_asked_for_is_a_warning(tiskel: Runner, skeleton: Path) -> None:
+    """A large sphere over the end of the rod: ways 0.7 % apart at coarse tolerances."""
+    tiskel("slice", skeleton.name, "-o", "f.json")
+    words = ("roll", "f.json", "-o", "t.csv", "--omega", "1,0,0", "--radius", 0.5)
+    coarse = tiskel(*words, "--rtol", 0.5, "--atol", 0.5)
+    assert coarse.returncode == 0
+    assert b"warning: the contact's way is 0.7" in coarse.stderr
+    strict = tiskel(*words, "--rtol", 0.5, "--atol", 0.5, "--strict", "--quiet")
+    assert "apart though there is no slip; take a smaller rtol" in one_error_line(strict)
+    assert tiskel(*words, "--strict").returncode == 0
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

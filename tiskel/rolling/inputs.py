@@ -52,6 +52,11 @@ class Inputs:
         return (w[0], w[1], w[2]), (w[3], w[4], w[5])
 
     @property
+    def slips(self) -> bool:
+        """Whether there is a slip velocity at any time."""
+        return bool(self.values[:, 3:].any())
+
+    @property
     def longest_step(self) -> float:
         """The longest step that a solver may take without missing a row."""
         return float(2 * np.median(np.diff(self.t))) if len(self.t) > 1 else np.inf

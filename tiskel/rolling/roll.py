@@ -22,6 +22,8 @@ from tiskel.surfaces.nearest import even_places, nearest_place
 from tiskel.surfaces.tube import V_STOP
 
 USUAL_RADIUS = 0.25  # of the surface's median radius
+SLIPLESS = 1e-3  # of a way: without slip the two ways are not farther apart
+STANDING = 1e-6  # of the sphere's radius: shorter ways are rounding
 GRID = 72, 200  # places around and along where a sphere that does not fit is tried
 
 
@@ -46,7 +48,8 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     return Trajectory(
         solution.t, **read(surface, model, params.sigma, radius, solution.states, params.start[4]),
         path_object=lengths[0], path_sphere=lengths[1], status=solution.status, reason=solution.reason,
-        evaluations=solution.evaluations, radius=radius, params=params, warnings=_warnings(inputs),
+        evaluations=solution.evaluations, radius=radius, params=params,
+        warnings=_warnings(inputs, lengths, radius, params),
     )  # fmt: skip
 
 
@@ -119,6 +122,17 @@ def _elsewhere(surface: ParametricSurface, params: RollParams, radius: float) ->
     return f"start at u = {u[best]:.4g}, v = {v[best]:.4g}, or take a smaller one"
 
 
-def _warnings(inputs: Inputs) -> tuple[str, ...]:
-    still = () if inputs.values.any() else ("the inputs are zero: the sphere stays where it is",)
-    return (*inputs.warnings, *still)
+def _warnings(inputs: Inputs, lengths: tuple[float, float], radius: float, params: RollParams) -> tuple[str, ...]:
+    """Return those of the inputs, and what a user should know of the run."""
+    found = list(inputs.warnings)
+    if not inputs.values.any():
+        found.append("the inputs are zero: the sphere stays where it is")
+    longer = max(lengths)
+    apart = abs(lengths[0] - lengths[1])
+    if not inputs.slips and longer > STANDING * radius and apart > SLIPLESS * longer:
+        found.append(
+            f"the contact's way is {lengths[0]:.6g} over the surface and {lengths[1]:.6g} over the sphere, "
+            f"{100 * apart / longer:.2g} % apart though there is no slip; take a smaller rtol than {params.rtol:g} "
+            f"and a smaller atol than {params.atol:g} (--rtol, --atol)"
+        )
+    return tuple(found)
