@@ -31,10 +31,22 @@ class BodyTrajectory:
 
     Attributes
     ----------
-    t : (n,). state : (n, 5), u_o, v_o, u_s, v_s, psi.
-    contact : (n, 3). position : (n, 3), where the origin of the body is. orientation : (n, 4), unit quaternions.
-    margin : (n,), the least eigenvalue of the relative curvature K_o + R_psi K_s R_psi.
-    status, reason : why the run ended.
+    t : (n,) array
+        Times, in seconds.
+    state : (n, 5) array
+        u_o and v_o on the object, u_s and v_s on the body, psi between the frames, in radians.
+    contact : (n, 3) array
+        Where both touch.
+    position : (n, 3) array
+        Where the origin of the body is.
+    orientation : (n, 4) array
+        Unit quaternions w, x, y, z of the body.
+    margin : (n,) array
+        Least eigenvalue of the relative curvature K_o + R_psi K_s R_psi, in 1 / length.
+    status : RollStatus
+        Why the run ended.
+    reason : str
+        The same as a sentence, with the time.
     """
 
     t: Numbers
@@ -52,9 +64,35 @@ def roll_body(
 ) -> BodyTrajectory:
     """Roll a body over a surface, both of any shape (Montana 1988; see :mod:`tiskel.rolling.equations`).
 
-    Of the settings side, omega, velocity, duration, rate, start and the
-    tolerances count; the twist is that of the object. Raises TiskelError where
-    the bodies would meet beside their contact at the start.
+    Parameters
+    ----------
+    surface : ParametricSurface
+        The object, which is fixed; f_u x f_v points out of it.
+    body : ParametricSurface
+        What rolls over it, in its own axes.
+    params : RollParams, optional
+        side, omega, velocity, duration, rate, start and the tolerances count; the twist is that of the object.
+    inputs : Inputs, optional
+        omega and V over time, in place of those of the settings.
+
+    Returns
+    -------
+    BodyTrajectory
+        Contact, pose and margin over time, and why the run ended.
+
+    Raises
+    ------
+    TiskelError
+        Where the bodies would meet beside their contact at the start, and for another twist than that of the object.
+
+    Examples
+    --------
+    >>> from tiskel import RollParams, roll_body
+    >>> from tiskel.surfaces.analytic import Ellipsoid, Torus
+    >>> p = RollParams(omega=(0.5, 0.3, 0), start=(0.3, 1.0, 0.1, 0.1, 0.4), duration=3, rate=10)
+    >>> r = roll_body(Torus(5.0, 2.0), Ellipsoid(0.3, 0.4, 0.25), p)
+    >>> r.status.value, r.state.shape, bool(r.margin.min() > 0)
+    ('finished', (31, 5), True)
     """
     params = params or RollParams()
     if params.twist != "object":

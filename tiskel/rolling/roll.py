@@ -31,11 +31,41 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     """Roll a sphere over a surface (Wen et al. 2025, corrected; see :mod:`tiskel.rolling.equations`).
 
     The state is integrated as u_o, v_o and a unit quaternion, so that the poles
-    of the sphere's chart are places like others. ``inputs`` over time stand in
-    for the constant ones of the settings. A run ends early, with a status and a
-    reason, where the contact leaves the branch, where the sphere no longer fits
-    or meets another part of the cloud, or where the surface folds. Raises
-    TiskelError where it cannot begin.
+    of the sphere's chart are places like others. A run ends early, with a status
+    and a reason, where the contact leaves the branch, where the sphere no longer
+    fits or meets another part of the cloud, or where the surface folds.
+
+    Parameters
+    ----------
+    surface : ParametricSurface
+        Fitted to a cloud or analytic; lengths in any unit.
+    params : RollParams, optional
+        Model, side, sphere, twist, duration and tolerances.
+    inputs : Inputs, optional
+        omega and V over time, in place of those of the settings.
+
+    Returns
+    -------
+    Trajectory
+        State, contact and pose over time, why the run ended, and warnings.
+
+    Raises
+    ------
+    TiskelError
+        Where the sphere cannot stand at the start, its radius is missing on a surface without a skeleton, or the
+        model needs another kind of surface.
+
+    Examples
+    --------
+    Around a cylinder of radius 2, outside: u' = -R_s omega_y / (R + R_s).
+
+    >>> from tiskel import RollParams, roll
+    >>> from tiskel.surfaces.analytic import cylinder
+    >>> r = roll(cylinder(2.0), RollParams(radius=0.5, omega=(0, 1, 0), start=(0, 0, 0, 0, 0), duration=5))
+    >>> f"{r.state[-1, 0]:.6f}"
+    '-1.000000'
+    >>> r.status.value, r.warnings
+    ('finished', ())
     """
     params, inputs = params or RollParams(), inputs or constant(params or RollParams())
     radius = params.radius or USUAL_RADIUS * median_radius(surface)
@@ -54,9 +84,12 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
 
 
 def median_radius(surface: ParametricSurface) -> float:
-    """Return the median radius of a surface around a skeleton.
+    """Return the median radius of a surface around a skeleton, in its unit of length.
 
-    Raises TiskelError for others: the sphere's radius has to be given.
+    Raises
+    ------
+    TiskelError
+        For other surfaces: the sphere's radius has to be given.
     """
     if isinstance(surface, FittedSurface):
         return surface.radius
