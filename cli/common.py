@@ -34,6 +34,8 @@ ROLLING: dict[str, tuple[Any, Any]] = {
     "omega": (surface_options.Omega, surface_options.OMEGA),
     "duration": (surface_options.Duration, surface_options.ROLL.duration),
     "start": (surface_options.Start, surface_options.START),
+    "rtol": (surface_options.Rtol, surface_options.ROLL.rtol),
+    "atol": (surface_options.Atol, surface_options.ROLL.atol),
 }
 
 

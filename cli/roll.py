@@ -45,6 +45,8 @@ def roll(
     start: so.Start = so.START,
     start_at: so.StartAt = None,
     normals: so.NormalsName = so.ROLL.normals,
+    rtol: so.Rtol = so.ROLL.rtol,
+    atol: so.Atol = so.ROLL.atol,
     as_json: Summary = False,
     plot: o.Plot = None,
     animate: so.Animate = None,
@@ -55,7 +57,7 @@ def roll(
     `tiskel slice s.ply | tiskel roll - --omega 1,0,0 --duration 5 > path.csv`
     """
     settings = so.roll_settings(
-        model, side, radius, omega, velocity, twist, duration, rate, start, start_at, normals
+        model, side, radius, omega, velocity, twist, duration, rate, start, start_at, normals, rtol, atol
     )  # fmt: skip
     given = so.inputs_of(inputs)
     from tiskel import roll as run

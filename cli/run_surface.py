@@ -83,4 +83,5 @@ def settings_of(rolling: Mapping[str, Any]) -> "list[Any]":
     return roll_settings(
         rolling["model"], rolling["side"], rolling["sphere"], rolling["omega"], VELOCITY, ROLL.twist,
         rolling["duration"], ROLL.rate, rolling["start"], None, ROLL.normals,
+        rolling["rtol"], rolling["atol"],
     )  # fmt: skip

@@ -126,6 +126,20 @@ NormalsName = Annotated[
         rich_help_panel="Method",
     ),
 ]
+Rtol = Annotated[
+    float,
+    typer.Option(
+        metavar="TOL",
+        help="Relative tolerance of the solver of rolling; published: 1e-3, with --atol 1e-5.",
+        rich_help_panel="Method",
+    ),
+]
+Atol = Annotated[
+    float,
+    typer.Option(
+        metavar="TOL", help="Absolute tolerance of the solver of rolling; published: 1e-5.", rich_help_panel="Method"
+    ),
+]
 Animate = Annotated[
     Path | None,
     typer.Option(
@@ -146,7 +160,7 @@ def surface_params(
 
 def roll_settings(
     model: str, side: str, radius: float | None, omega: str, velocity: str, twist: str, duration: float | None,
-    rate: float, start: str, start_at: str | None, normals: str,
+    rate: float, start: str, start_at: str | None, normals: str, rtol: float, atol: float,
 ) -> list[RollParams]:  # fmt: skip
     """Return the settings of every run that a choice of model asks for."""
     if model not in MODELS:
@@ -164,6 +178,8 @@ def roll_settings(
             start=numbers_of("--start", start, 5),  # type: ignore[arg-type]
             start_at=None if start_at is None else numbers_of("--start-at", start_at, 3),  # type: ignore[arg-type]
             normals=normals if one == "global" else "surface",  # type: ignore[arg-type]
+            rtol=rtol,
+            atol=atol,
         )
         for one in MODELS[model]
     ]

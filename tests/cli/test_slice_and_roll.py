@@ -99,7 +99,9 @@ def test_options_reach_the_library(tiskel: Runner, skeleton: Path, tmp_path: Pat
     assert len(document["surfaces"][0]["sections"]) < 30
     more = ("--side", "inside", "--radius", 0.05, "--velocity", "0.01,0,0", "--twist", "sphere")
     start = ("--start", "0,pi/3,0,0,-pi")
-    run = json.loads(tiskel("roll", "f.json", "--json", "--duration", 1, *more, *start).stdout)["runs"][0]
+    exact = ("--rtol", 1e-3, "--atol", 1e-5)
+    run = json.loads(tiskel("roll", "f.json", "--json", "--duration", 1, *more, *start, *exact).stdout)["runs"][0]
+    assert (run["rtol"], run["atol"]) == (1e-3, 1e-5)
     assert (run["side"], run["radius"], run["twist"], run["time"]) == ("inside", 0.05, "sphere", 1.0)
     assert run["start"] == pytest.approx([0, np.pi / 3, 0, 0, -np.pi], abs=1e-12)
     near = tiskel("roll", "f.json", "--json", "--duration", 1, "--start-at", "1.2,0,0")
@@ -126,6 +128,18 @@ def test_inputs_from_a_table(tiskel: Runner, skeleton: Path, tmp_path: Path) -> 
     assert gap.returncode == 0
     assert b"no row between t = 0.9 and 5" in gap.stderr
     assert tiskel("roll", "f.json", "--inputs", "w.csv", "-o", "t.csv", "--strict").returncode == 1
+
+
+def test_slip_that_nobody_asked_for_is_a_warning(tiskel: Runner, skeleton: Path) -> None:
+    """A large sphere over the end of the rod: ways 0.7 % apart at coarse tolerances."""
+    tiskel("slice", skeleton.name, "-o", "f.json")
+    words = ("roll", "f.json", "-o", "t.csv", "--omega", "1,0,0", "--radius", 0.5)
+    coarse = tiskel(*words, "--rtol", 0.5, "--atol", 0.5)
+    assert coarse.returncode == 0
+    assert b"warning: the contact's way is 0.7" in coarse.stderr
+    strict = tiskel(*words, "--rtol", 0.5, "--atol", 0.5, "--strict", "--quiet")
+    assert "apart though there is no slip; take a smaller rtol" in one_error_line(strict)
+    assert tiskel(*words, "--strict").returncode == 0
 
 
 @pytest.mark.parametrize(
@@ -159,6 +173,7 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
         (("f.json", "--branch", "thumb"), "no surface of branch thumb; there are 0"),
         (("f.json", "--model", "own"), "--model must be one of global, local, both"),
         (("f.json", "--omega", "a,b,c"), "--omega needs 3 numbers"),
+        (("f.json", "--rtol", 0), "rtol must be a positive number, got 0"),
         (("f.json", "--velocity", "0,0,1"), "velocity along the normal must be 0"),
     ):
         assert said in one_error_line(tiskel("roll", *words))
@@ -178,9 +193,12 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
 def test_run_slices_and_rolls_and_says_where_it_cannot(tiskel: Runner, tmp_path: Path) -> None:
     tiskel("shape", "banana", "-n", 1500, "-o", "b.ply")
     words = ("--model", "both", "--side", "inside", "--sphere", 0.03, "--duration", 1, "--branch", "longest")
-    assert tiskel("run", "b.ply", "-o", "out", *words).returncode == 0
+    exact = ("--rtol", 1e-4, "--atol", 1e-7)
+    assert tiskel("run", "b.ply", "-o", "out", *words, *exact).returncode == 0
     made = {path.name for path in (tmp_path / "out").iterdir()}
     assert {"surface.json", "surface.ply", "slices.csv", "path.csv", "roll.json", "slices.png", "roll.png"} <= made
+    runs = json.loads((tmp_path / "out" / "roll.json").read_bytes())["runs"]
+    assert [(run["rtol"], run["atol"]) for run in runs] == [(1e-4, 1e-7)] * 2
     report = (tmp_path / "out" / "report.html").read_text()
     assert 'src="roll.png"' in report
     assert "inside" in report

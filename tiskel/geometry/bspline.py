@@ -24,9 +24,16 @@ DERIVATIVES = 4  # the value and three of them
 
 @dataclass(frozen=True)
 class Strip:
-    """A spline: coefficients (b, d) of the B-splines on even intervals from 0 to stop.
+    """A spline on even intervals.
 
-    b is intervals + 5; if periodic, the last five rows repeat the first five.
+    Attributes
+    ----------
+    coefficients : (b, d) array
+        Of the B-splines, b = intervals + 5; if periodic, the last five rows repeat the first five.
+    stop : float
+        v runs from 0 to it.
+    periodic : bool
+        Whether it closes.
     """
 
     coefficients: Numbers
@@ -81,8 +88,22 @@ def fit_strip(
 ) -> Strip:
     """Return the strip nearest to values (m, d) at places v (m,) with weights (m,), all columns alike smooth.
 
-    ``penalty`` is the weight of roughness, in the mean weight of the values;
-    None: by cross-validation.
+    Parameters
+    ----------
+    v : (m,) array
+        Places, from 0 to stop.
+    values : (m, d) array
+        What to fit.
+    weights : (m,) array
+        Of the values.
+    intervals : int
+        Even ones; five at least if periodic.
+    stop : float
+        Where the strip ends or closes.
+    periodic : bool
+        Whether it closes.
+    penalty : float, optional
+        Weight of roughness, in the mean weight of the values; None: by generalised cross-validation.
     """
     intervals = max(intervals, DEGREE) if periodic else max(intervals, 1)
     wrap = np.arange(intervals + DEGREE) % (intervals if periodic else intervals + DEGREE)

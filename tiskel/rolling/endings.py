@@ -22,38 +22,57 @@ SUNK, ROUGH = 0.05, 4.0  # points deeper in the sphere than so many of its radii
 
 @dataclass(frozen=True)
 class Ending:
-    """A quantity of u and v that is positive while a run can go on."""
+    """What ends a run, as an event of the solver.
+
+    Attributes
+    ----------
+    status : RollStatus
+        The word for it.
+    what : str
+        The sentence for it.
+    value : callable
+        A function of the integrated state, u_o and v_o first, that is positive while the run can go on.
+    """
 
     status: RollStatus
     what: str
-    value: Callable[[float, float], float]
+    value: Callable[..., float]
     terminal = True
     direction = -1.0
 
     def __call__(self, t: float, y: Numbers) -> float:
-        return self.value(float(y[0]), float(y[1]))
+        """Return the value at a time and a state (d,)."""
+        return self.value(*y.tolist())
 
 
 def endings(surface: ParametricSurface, model: RollingModel, params: RollParams, radius: float) -> list[Ending]:
-    """Return everything that can end a run over a surface."""
-    low, high = surface.v_range
+    """Return everything that can end a run of a sphere over a surface, what is told first in front."""
     found = [
         Ending(
             RollStatus.TIGHT, "lambda_min(K_o) + 1/R_s is 0: the surface bends as sharply as the sphere",
-            lambda u, v: float(margin(model.forms(u, v), radius)) * radius - TOUCHING,
+            lambda u, v, *_: float(margin(model.forms(u, v), radius)) * radius - TOUCHING,
         )
     ]  # fmt: skip
-    if isfinite(low) or isfinite(high):
-        found.append(Ending(RollStatus.LEFT, "v reached the end of the branch", lambda u, v: min(v - low, high - v)))
+    found += ends_of_branch(surface)
     tube = tube_of(surface)
     if tube is not None:
         found += [
-            Ending(RollStatus.CROSSED, "the surface folds where slices cross", lambda u, v: float(tube.spread(u, v))),
-            Ending(RollStatus.CLOSED, "the surface has no radius there", lambda u, v: float(tube.at(u, v)[1].R)),
+            Ending(
+                RollStatus.CROSSED, "the surface folds where slices cross", lambda u, v, *_: float(tube.spread(u, v))
+            ),
+            Ending(RollStatus.CLOSED, "the surface has no radius there", lambda u, v, *_: float(tube.at(u, v)[1].R)),
         ]
     if params.meet and isinstance(surface, FittedSurface):
         found.append(Ending(RollStatus.MET, "points away from the contact lie in it", Meeting(surface, params, radius)))
     return found
+
+
+def ends_of_branch(surface: ParametricSurface) -> list[Ending]:
+    """Return what ends a run where v leaves its range; nothing on surfaces without end."""
+    low, high = surface.v_range
+    if not (isfinite(low) or isfinite(high)):
+        return []
+    return [Ending(RollStatus.LEFT, "v reached the end of the branch", lambda u, v, *_: min(v - low, high - v))]
 
 
 class Meeting:
@@ -64,7 +83,7 @@ class Meeting:
         self.reach = max(radius - max(SUNK * radius, ROUGH * surface.error * surface.radius), 0.0)
         self.tree = cKDTree(surface.cloud)
 
-    def __call__(self, u: float, v: float) -> float:
+    def __call__(self, u: float, v: float, *_: float) -> float:
         """Return -1 where points farther from the contact than the radius lie deep in the sphere, else 1."""
         jet = self.surface.jet(u, v)
         contact = np.array(jet.f)

@@ -29,7 +29,21 @@ Triple = tuple[Scalar, Scalar, Scalar]
 
 
 class Rates(NamedTuple):
-    """Derivatives of the five contact coordinates, per second."""
+    """Derivatives of the five contact coordinates, in radians per second.
+
+    Attributes
+    ----------
+    u_o : float or array
+        Around the object.
+    v_o : float or array
+        Along the object.
+    u_s : float or array
+        Latitude on the sphere, or u on the body.
+    v_s : float or array
+        Longitude on the sphere, or v on the body.
+    psi : float or array
+        Between both contact frames.
+    """
 
     u_o: Scalar
     v_o: Scalar

@@ -19,8 +19,27 @@ class Inputs:
 
     Attributes
     ----------
-    t : (k,) seconds, rising. values : (k, 6), omega in rad/s and V in lengths per second.
-    warnings : what a user should know.
+    t : (k,) array
+        Times in seconds, rising.
+    values : (k, 6) array
+        omega in rad/s, then V in lengths per second.
+    warnings : tuple of str
+        What a user should know.
+
+    Raises
+    ------
+    TiskelError
+        Where a row has not six values, one that is not finite, or a time that does not rise.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel import Inputs
+    >>> inputs = Inputs(np.array([0.0, 2.0]), np.array([[0.0, 0, 0, 0, 0, 0], [2.0, 0, 0, 0.1, 0, 0]]))
+    >>> inputs.at(1.0)
+    ((1.0, 0.0, 0.0), (0.05, 0.0, 0.0))
+    >>> inputs.slips
+    True
     """
 
     t: Numbers
@@ -41,7 +60,7 @@ class Inputs:
             )
 
     def at(self, t: float) -> tuple[Triple, Triple]:
-        """Return omega and V at a time."""
+        """Return omega in rad/s and V in lengths per second at a time in seconds."""
         if len(self.t) == 1:
             w = self.values[0].tolist()
         else:
@@ -52,8 +71,13 @@ class Inputs:
         return (w[0], w[1], w[2]), (w[3], w[4], w[5])
 
     @property
+    def slips(self) -> bool:
+        """Whether there is a slip velocity at any time."""
+        return bool(self.values[:, 3:].any())
+
+    @property
     def longest_step(self) -> float:
-        """The longest step that a solver may take without missing a row."""
+        """The longest step in seconds that a solver may take without missing a row."""
         return float(2 * np.median(np.diff(self.t))) if len(self.t) > 1 else np.inf
 
 

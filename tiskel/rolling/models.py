@@ -30,7 +30,17 @@ class RollingModel(Protocol):
 
 @dataclass(frozen=True)
 class GlobalModel:
-    """The surface as it is."""
+    """The surface as it is.
+
+    Attributes
+    ----------
+    surface : ParametricSurface
+        The object.
+    sigma : float
+        1 outside, -1 inside.
+    radius : float
+        Of the sphere.
+    """
 
     surface: ParametricSurface
     sigma: float
@@ -48,7 +58,17 @@ class GlobalModel:
 
 @dataclass(frozen=True)
 class LocalModel:
-    """A straight skeleton, and a radius that is as at the contact all along it."""
+    """A straight skeleton, and a radius that is as at the contact all along it.
+
+    Attributes
+    ----------
+    tube : Tube
+        The object.
+    sigma : float
+        1 outside, -1 inside.
+    radius : float
+        Of the sphere.
+    """
 
     tube: Tube
     sigma: float
@@ -88,7 +108,13 @@ def tube_of(surface: ParametricSurface) -> Tube | None:
 
 
 def model_of(surface: ParametricSurface, params: RollParams, radius: float) -> RollingModel:
-    """Return the model that the settings name."""
+    """Return the model that the settings name, for a sphere of some radius.
+
+    Raises
+    ------
+    TiskelError
+        Where the local model is asked for without a skeleton, or normals of neighbours without a cloud.
+    """
     tube = tube_of(surface)
     if params.model == "local":
         if tube is None:

@@ -25,7 +25,19 @@ AROUND, PER_SLICE = 48, 1  # places where the shape operator is taken; it is str
 
 @dataclass(frozen=True)
 class PrintedModel:
-    """A surface with shape operators (rows, around, 3, 3) from elsewhere, on an even grid of v and u."""
+    """A surface whose curvature comes from elsewhere.
+
+    Attributes
+    ----------
+    tube : Tube
+        The surface.
+    sigma : float
+        1 outside, -1 inside.
+    radius : float
+        Of the sphere.
+    operators : (rows, around, 3, 3) array
+        Shape operators in the axes of the cloud on an even grid of v and u, in 1 / length.
+    """
 
     tube: Tube
     sigma: float

@@ -1,17 +1,16 @@
 """What a solution says: chart, places, poses, margins, and the lengths of both ways."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from tiskel.arrays import Numbers
 from tiskel.rolling.equations import controllability, margin
 from tiskel.rolling.models import RollingModel, tube_of
+from tiskel.rolling.solution import Solution
 from tiskel.rolling.sphere import chart_of, quaternions_of, rotation_of
 from tiskel.surfaces.forms import Forms, forms_of
 from tiskel.surfaces.jets import ParametricSurface, Vector
 
-FINE = 2001  # places along the ways whose lengths are compared
+FINE, LEAST = 2000, 10  # places along the ways whose lengths are compared: at least so many in all, and in a step
 
 
 def read(
@@ -43,17 +42,26 @@ def read(
     }
 
 
-def path_lengths(
-    model: RollingModel, radius: float, solved: Callable[[Numbers], Numbers], stop: float
-) -> tuple[float, float]:  # fmt: skip
-    """Return how long the contact's ways over the object and over the sphere are, from places along them."""
-    y = solved(np.linspace(0, stop, FINE)).T
+def path_lengths(model: RollingModel, radius: float, solution: Solution) -> tuple[float, float]:
+    """Return how long the contact's ways over the object and over the sphere are, from places along them.
+
+    They are two measurements of one length where there is no slip: the first
+    integrates the metric of the surface along u and v, the second adds up arcs
+    between the places (n, 3) on the sphere that the quaternions say.
+    """
+    y = solution.at(fine_times(solution.steps)).T
     (m11, m12), (_, m22) = model.forms(*((y[1:, :2] + y[:-1, :2]) / 2).T).M
     du, dv = np.diff(y[:, :2], axis=0).T
     on_sphere = -rotation_of(y[:, 2:])[:, 2]  # Q^T (-z_o)
     chords = np.linalg.norm(np.diff(on_sphere, axis=0), axis=1)
     arcs = 2 * radius * np.arcsin(np.minimum(chords / 2, 1))
     return float(np.hypot(m11 * du + m12 * dv, m22 * dv).sum()), float(arcs.sum())
+
+
+def fine_times(steps: Numbers) -> Numbers:
+    """Return times that divide the solver's steps (k,) evenly: close where it had to look closely."""
+    pieces = max(-(-FINE // (len(steps) - 1)), LEAST)
+    return np.interp(np.arange((len(steps) - 1) * pieces + 1) / pieces, np.arange(len(steps)), steps)
 
 
 def frames_of(forms: Forms) -> Numbers:

@@ -1,10 +1,8 @@
 """The stage ``roll``: a surface and a twist in, the way of a sphere over the surface out."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
@@ -14,6 +12,7 @@ from tiskel.rolling.equations import frame_turn, margin
 from tiskel.rolling.inputs import Inputs, constant, of_the_object, sphere_axes
 from tiskel.rolling.models import RollingModel, model_of, tube_of
 from tiskel.rolling.reading import path_lengths, read
+from tiskel.rolling.solution import solve
 from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate
 from tiskel.rolling.trajectory import RollStatus, Trajectory
 from tiskel.slicing.fitted import FittedSurface
@@ -22,8 +21,9 @@ from tiskel.surfaces.jets import ParametricSurface
 from tiskel.surfaces.nearest import even_places, nearest_place
 from tiskel.surfaces.tube import V_STOP
 
-USUAL_RADIUS, USUAL_DURATION = 0.25, 10.0  # of the surface's median radius; seconds
-STRIDE = 0.4  # radians that the sphere turns in a step of the solver at most: endings are looked for between steps
+USUAL_RADIUS = 0.25  # of the surface's median radius
+SLIPLESS = 1e-3  # of a way: without slip the two ways are not farther apart
+STANDING = 1e-6  # of the sphere's radius: shorter ways are rounding
 GRID = 72, 200  # places around and along where a sphere that does not fit is tried
 
 
@@ -31,11 +31,41 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     """Roll a sphere over a surface (Wen et al. 2025, corrected; see :mod:`tiskel.rolling.equations`).
 
     The state is integrated as u_o, v_o and a unit quaternion, so that the poles
-    of the sphere's chart are places like others. ``inputs`` over time stand in
-    for the constant ones of the settings. A run ends early, with a status and a
-    reason, where the contact leaves the branch, where the sphere no longer fits
-    or meets another part of the cloud, or where the surface folds. Raises
-    TiskelError where it cannot begin.
+    of the sphere's chart are places like others. A run ends early, with a status
+    and a reason, where the contact leaves the branch, where the sphere no longer
+    fits or meets another part of the cloud, or where the surface folds.
+
+    Parameters
+    ----------
+    surface : ParametricSurface
+        Fitted to a cloud or analytic; lengths in any unit.
+    params : RollParams, optional
+        Model, side, sphere, twist, duration and tolerances.
+    inputs : Inputs, optional
+        omega and V over time, in place of those of the settings.
+
+    Returns
+    -------
+    Trajectory
+        State, contact and pose over time, why the run ended, and warnings.
+
+    Raises
+    ------
+    TiskelError
+        Where the sphere cannot stand at the start, its radius is missing on a surface without a skeleton, or the
+        model needs another kind of surface.
+
+    Examples
+    --------
+    Around a cylinder of radius 2, outside: u' = -R_s omega_y / (R + R_s).
+
+    >>> from tiskel import RollParams, roll
+    >>> from tiskel.surfaces.analytic import cylinder
+    >>> r = roll(cylinder(2.0), RollParams(radius=0.5, omega=(0, 1, 0), start=(0, 0, 0, 0, 0), duration=5))
+    >>> f"{r.state[-1, 0]:.6f}"
+    '-1.000000'
+    >>> r.status.value, r.warnings
+    ('finished', ())
     """
     params, inputs = params or RollParams(), inputs or constant(params or RollParams())
     radius = params.radius or USUAL_RADIUS * median_radius(surface)
@@ -43,39 +73,23 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     watched = endings(surface, model, params, radius)
     start = _start(surface, params)
     _check_start(surface, params, radius, start, watched)
-    solution = solve_ivp(
-        _Rate(model, params, inputs), (0.0, duration_of(params, inputs)), start, method="RK45", rtol=params.rtol,
-        atol=params.atol, max_step=longest_step(inputs, radius), events=watched, dense_output=True,
-    )  # fmt: skip
-    stop = float(solution.t[-1])
-    t = np.append(np.arange(0, stop - 0.5 / params.rate, 1 / params.rate), stop)
-    status, reason = _ending(solution, watched)
-    lengths = path_lengths(model, radius, solution.sol, stop)
+    solution = solve(_Rate(model, params, inputs), start, params, inputs, radius, watched)
+    lengths = path_lengths(model, radius, solution)
     return Trajectory(
-        t, **read(surface, model, params.sigma, radius, solution.sol(t).T, params.start[4]), path_object=lengths[0],
-        path_sphere=lengths[1], status=status, reason=reason, evaluations=int(solution.nfev), radius=radius,
-        params=params, warnings=_warnings(inputs),
+        solution.t, **read(surface, model, params.sigma, radius, solution.states, params.start[4]),
+        path_object=lengths[0], path_sphere=lengths[1], status=solution.status, reason=solution.reason,
+        evaluations=solution.evaluations, radius=radius, params=params,
+        warnings=_warnings(inputs, lengths, radius, params),
     )  # fmt: skip
-
-
-def longest_step(inputs: Inputs, radius: float) -> float:
-    """Return the longest step in time that misses neither a row of the inputs nor a place where the run should end."""
-    fastest = float((np.linalg.norm(inputs.values[:, :3], axis=1)
-                     + np.linalg.norm(inputs.values[:, 3:], axis=1) / radius).max())  # fmt: skip
-    return min(inputs.longest_step, STRIDE / fastest) if fastest > 0 else inputs.longest_step
-
-
-def duration_of(params: RollParams, inputs: Inputs) -> float:
-    """Return the duration asked for, else that of the inputs, else the usual one."""
-    if params.duration is not None:
-        return params.duration
-    return float(inputs.t[-1]) if len(inputs.t) > 1 and inputs.t[-1] > 0 else USUAL_DURATION
 
 
 def median_radius(surface: ParametricSurface) -> float:
-    """Return the median radius of a surface around a skeleton.
+    """Return the median radius of a surface around a skeleton, in its unit of length.
 
-    Raises TiskelError for others: the sphere's radius has to be given.
+    Raises
+    ------
+    TiskelError
+        For other surfaces: the sphere's radius has to be given.
     """
     if isinstance(surface, FittedSurface):
         return surface.radius
@@ -141,17 +155,17 @@ def _elsewhere(surface: ParametricSurface, params: RollParams, radius: float) ->
     return f"start at u = {u[best]:.4g}, v = {v[best]:.4g}, or take a smaller one"
 
 
-def _ending(solution: Any, watched: list[Ending]) -> tuple[RollStatus, str]:
-    """Return why the solver stopped, in one word and in a sentence."""
-    stop = float(solution.t[-1])
-    if solution.status == 0:
-        return RollStatus.FINISHED, f"all of {stop:g} s"
-    for ending, times in zip(watched, solution.t_events or (), strict=False):
-        if solution.status == 1 and len(times):
-            return ending.status, f"{ending.what}, at t = {times[-1]:.4g} s"
-    return RollStatus.STUCK, f"{solution.message}, at t = {stop:.4g} s"
-
-
-def _warnings(inputs: Inputs) -> tuple[str, ...]:
-    still = () if inputs.values.any() else ("the inputs are zero: the sphere stays where it is",)
-    return (*inputs.warnings, *still)
+def _warnings(inputs: Inputs, lengths: tuple[float, float], radius: float, params: RollParams) -> tuple[str, ...]:
+    """Return those of the inputs, and what a user should know of the run."""
+    found = list(inputs.warnings)
+    if not inputs.values.any():
+        found.append("the inputs are zero: the sphere stays where it is")
+    longer = max(lengths)
+    apart = abs(lengths[0] - lengths[1])
+    if not inputs.slips and longer > STANDING * radius and apart > SLIPLESS * longer:
+        found.append(
+            f"the contact's way is {lengths[0]:.6g} over the surface and {lengths[1]:.6g} over the sphere, "
+            f"{100 * apart / longer:.2g} % apart though there is no slip; take a smaller rtol than {params.rtol:g} "
+            f"and a smaller atol than {params.atol:g} (--rtol, --atol)"
+        )
+    return tuple(found)

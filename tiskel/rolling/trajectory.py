@@ -11,7 +11,35 @@ from tiskel.params import RollParams
 
 
 class RollStatus(str, Enum):
-    """Why a run ended."""
+    """Why a run ended; a word to compare and to print.
+
+    Attributes
+    ----------
+    FINISHED
+        The duration is over.
+    LEFT
+        v reached the end of the branch.
+    TIGHT
+        The surface bends as sharply as the sphere, which would touch it twice.
+    CROSSED
+        Slices cross: the surface folds there.
+    CLOSED
+        The radius of the surface is zero.
+    MET
+        Points away from the contact lie in the sphere.
+    STUCK
+        The solver found no step small enough, as at the pole of a chart.
+
+    Examples
+    --------
+    >>> from tiskel import RollParams, RollStatus, roll
+    >>> from tiskel.surfaces.analytic import Cone
+    >>> r = roll(Cone(0.3), RollParams(radius=0.1, omega=(-1, 0, 0), start=(0, 1, 0, 0, 0), duration=60))
+    >>> r.status is RollStatus.LEFT, r.status.value
+    (True, 'left the branch')
+    >>> r.reason
+    'v reached the end of the branch, at t = 10.47 s'
+    """
 
     FINISHED = "finished"
     LEFT = "left the branch"
@@ -28,13 +56,50 @@ class Trajectory:
 
     Attributes
     ----------
-    t : (n,). state : (n, 5), u_o, v_o, u_s, v_s, psi, without jumps of a turn.
-    contact, centre : (n, 3). orientation : (n, 4), unit quaternions w, x, y, z of the sphere.
-    object_radius : (n,), R at the contact, NaN for surfaces without a skeleton.
-    margin : (n,), lambda_min(K_o) + 1/R_s; determinant : (n,), det Q of the controllability with spin.
-    path_object, path_sphere : lengths of the contact's ways, measured from places along them, not from rates.
-    status, reason : why it ended. evaluations : of the right-hand side. radius : of the sphere.
-    warnings : what a user should know.
+    t : (n,) array
+        Times, evenly ``params.rate`` per second; the last is where the run ended.
+    state : (n, 5) array
+        u_o and v_o on the object, u_s and v_s on the sphere, psi between the frames, without jumps of a turn.
+    contact : (n, 3) array
+        Where sphere and object touch.
+    centre : (n, 3) array
+        Of the sphere.
+    orientation : (n, 4) array
+        Unit quaternions w, x, y, z of the sphere, without jumps of sign.
+    object_radius : (n,) array
+        R at the contact; NaN on surfaces without a skeleton.
+    margin : (n,) array
+        lambda_min(K_o) + 1/R_s, in 1 / length: the sphere fits while it is positive.
+    determinant : (n,) array
+        det Q of the controllability with spin, in 1 / length^2 (Wen et al. 2025, corrected).
+    path_object : float
+        Length of the contact's way over the object, measured from places along it, not from rates.
+    path_sphere : float
+        The same over the sphere; without slip both are equal.
+    status : RollStatus
+        Why the run ended.
+    reason : str
+        The same as a sentence, with the time.
+    evaluations : int
+        Of the right-hand side.
+    radius : float
+        Of the sphere.
+    params : RollParams
+        The settings of the run.
+    warnings : tuple of str
+        What a user should know: of the inputs, and of slip that nobody asked for.
+
+    Examples
+    --------
+    >>> from tiskel import RollParams, roll
+    >>> from tiskel.surfaces.analytic import cylinder
+    >>> r = roll(cylinder(2.0), RollParams(radius=0.5, omega=(0, 1, 0), start=(0, 0, 0, 0, 0), duration=5, rate=10))
+    >>> r.t.shape, r.state.shape, r.orientation.shape
+    ((51,), (51, 5), (51, 4))
+    >>> r.status.value, r.reason
+    ('finished', 'all of 5 s')
+    >>> f"{r.path_object:.4f} {r.path_sphere:.4f} {r.margin.min():.4f}"
+    '2.0000 2.0000 2.0000'
     """
 
     t: Numbers
@@ -55,7 +120,7 @@ class Trajectory:
     warnings: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the summary as plain values."""
+        """Return the summary as plain values, ready for JSON; lengths, radians and seconds as above."""
         p = self.params
         return {
             "status": self.status.value,
@@ -65,6 +130,8 @@ class Trajectory:
             "side": p.side,
             "twist": p.twist,
             "radius": self.radius,
+            "rtol": p.rtol,
+            "atol": p.atol,
             "start": self.state[0].tolist(),
             "end": self.state[-1].tolist(),
             "time": float(self.t[-1]),

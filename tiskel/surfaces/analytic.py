@@ -25,7 +25,20 @@ class Plane:
 
 @dataclass(frozen=True)
 class EllipticCylinder:
-    """f = (v, a cos u, b sin u)."""
+    """f = (v, a cos u, b sin u).
+
+    Attributes
+    ----------
+    a : float
+        Half-axis where u = 0.
+    b : float
+        The other one.
+
+    Examples
+    --------
+    >>> EllipticCylinder(2.0, 1.0).jet(0.0, 3.0).f == (3.0, 2.0, 0.0)
+    True
+    """
 
     a: float
     b: float
@@ -46,7 +59,13 @@ def cylinder(radius: float) -> EllipticCylinder:
 
 @dataclass(frozen=True)
 class Cone:
-    """f = (v, v t cos u, v t sin u) with t the tangent of the half-angle; v > 0 from the apex along the axis."""
+    """f = (v, v t cos u, v t sin u) with t the tangent of the half-angle; v > 0 from the apex along the axis.
+
+    Attributes
+    ----------
+    half_angle : float
+        In radians.
+    """
 
     half_angle: float
     v_range = (0.0, inf)
@@ -62,7 +81,15 @@ class Cone:
 
 @dataclass(frozen=True)
 class Torus:
-    """A tube of some radius about a circle of radius ``bend``; u = 0 is where it looks at the centre."""
+    """A tube about a circle; u = 0 is where it looks at the centre.
+
+    Attributes
+    ----------
+    bend : float
+        Radius of the circle.
+    tube : float
+        Radius of the tube.
+    """
 
     bend: float
     tube: float
@@ -81,7 +108,17 @@ class Torus:
 
 @dataclass(frozen=True)
 class Ellipsoid:
-    """f = (a cos u cos v, -b cos u sin v, c sin u), in the chart of the rolling sphere; poles at u = +-pi/2."""
+    """f = (a cos u cos v, -b cos u sin v, c sin u), in the chart of the rolling sphere; poles at u = +-pi/2.
+
+    Attributes
+    ----------
+    a : float
+        First half-axis.
+    b : float
+        Second half-axis.
+    c : float
+        Third half-axis, through the poles.
+    """
 
     a: float
     b: float

@@ -16,7 +16,23 @@ Form = tuple[tuple[Scalar, Scalar], tuple[Scalar, Scalar]]
 
 
 class Forms(NamedTuple):
-    """Frame (x, y, z), M (upper triangular), K and T at a place of a surface."""
+    """Frame and forms at a place of a surface (Montana 1988).
+
+    Attributes
+    ----------
+    x : Vector
+        Unit vector along f_u.
+    y : Vector
+        z x x.
+    z : Vector
+        Unit normal from the material to the other body.
+    M : Form
+        Metric, upper triangular, in length per unit of u and v.
+    K : Form
+        Curvature form, in radians per unit of u and v.
+    T : (Scalar, Scalar)
+        Torsion form, in radians per unit of u and v.
+    """
 
     x: Vector
     y: Vector
@@ -41,14 +57,22 @@ def forms_of(jet: Jet, sigma: float = 1.0) -> Forms:
 
 
 def curvature(forms: Forms) -> tuple[Scalar, Scalar, Scalar]:
-    """Return xx, xy and yy of K_o = K M^-1, the shape operator in (x, y): positive where convex to the other body."""
+    """Return xx, xy and yy of K_o = K M^-1, the shape operator in (x, y), in 1 / length; positive where convex."""
     (m11, m12), (_, m22) = forms.M
     (k11, _), (k21, k22) = forms.K
     return k11 / m11, k21 / m11, (k22 - k21 * m12 / m11) / m22
 
 
 def principal_curvatures(forms: Forms) -> tuple[Scalar, Scalar]:
-    """Return the smaller and the larger eigenvalue of K_o, in 1 / length."""
+    """Return the smaller and the larger eigenvalue of K_o, in 1 / length.
+
+    Examples
+    --------
+    >>> from tiskel.surfaces.analytic import Torus
+    >>> low, high = principal_curvatures(forms_of(Torus(5.0, 2.0).jet(0.0, 0.0)))
+    >>> f"{low:.4f} {high:.4f}"
+    '-0.3333 0.5000'
+    """
     xx, xy, yy = curvature(forms)
     mean, spread = (xx + yy) / 2, (((xx - yy) / 2) ** 2 + xy**2) ** 0.5
     return mean - spread, mean + spread

@@ -11,7 +11,23 @@ Vector = tuple[Scalar, Scalar, Scalar]
 
 
 class Jet(NamedTuple):
-    """A surface f at (u, v), in the surface's unit of length."""
+    """A surface f at (u, v): vectors in the surface's unit of length, u and v in radians or without unit.
+
+    Attributes
+    ----------
+    f : Vector
+        The place.
+    f_u : Vector
+        Its derivative in u.
+    f_v : Vector
+        In v.
+    f_uu : Vector
+        Twice in u.
+    f_uv : Vector
+        In both.
+    f_vv : Vector
+        Twice in v.
+    """
 
     f: Vector
     f_u: Vector
@@ -24,7 +40,12 @@ class Jet(NamedTuple):
 class ParametricSurface(Protocol):
     """A regular surface; f_u x f_v points outward, from the material.
 
-    ``v_range`` is where v lives, ``periods`` the periods of u and v (None: not periodic).
+    Attributes
+    ----------
+    v_range : (float, float)
+        Where v lives; infinite where there is no end.
+    periods : (float or None, float or None)
+        Of u and v; None where it is not periodic.
     """
 
     @property
@@ -38,18 +59,22 @@ class ParametricSurface(Protocol):
 
 
 def dot(a: Vector, b: Vector) -> Scalar:
+    """Return a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
+    """Return a x b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def scaled(a: Vector, factor: Scalar) -> Vector:
+    """Return a vector times a number."""
     return factor * a[0], factor * a[1], factor * a[2]
 
 
 def plus(a: Vector, b: Vector) -> Vector:
+    """Return a + b."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 

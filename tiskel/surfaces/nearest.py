@@ -25,8 +25,19 @@ def nearest_place(surface: ParametricSurface, point: Numbers) -> tuple[float, fl
     """Return u and v of the place nearest to a point (3,), v held to the branch.
 
     Newton's method on the distance from the best place of a grid, with steps of
-    Gauss and Newton where the distance is not convex. Raises TiskelError for a
-    point that is not finite.
+    Gauss and Newton where the distance is not convex.
+
+    Raises
+    ------
+    TiskelError
+        For a point that is not finite.
+
+    Examples
+    --------
+    >>> from tiskel.surfaces.analytic import cylinder
+    >>> u, v = nearest_place(cylinder(2.0), np.array([1.5, 0.0, 3.0]))
+    >>> f"{u:.4f} {v:.4f}"
+    '1.5708 1.5000'
     """
     if not np.isfinite(point).all():
         raise TiskelError(f"a point needs three finite coordinates, got {point.tolist()}")
@@ -37,7 +48,7 @@ def nearest_place(surface: ParametricSurface, point: Numbers) -> tuple[float, fl
 
 
 def refined_place(surface: ParametricSurface, point: Numbers, u: float, v: float) -> tuple[float, float]:
-    """Return the nearest place from a good guess."""
+    """Return u and v of the place nearest to a point (3,), from a good guess."""
     low, high = surface.v_range
     for _ in range(ROUNDS):
         f, f_u, f_v, f_uu, f_uv, f_vv = (np.array(part, float) for part in surface.jet(u, v))

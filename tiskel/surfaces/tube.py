@@ -23,7 +23,27 @@ V_STOP = pi  # v runs from 0 to pi along the skeleton curve
 
 
 class Moving(NamedTuple):
-    """The moving frame at a place: p, l = |p'|, x, y, z, and how it turns."""
+    """The moving frame at a place of the skeleton curve, and how it turns.
+
+    Attributes
+    ----------
+    p : Vector
+        The place.
+    l : Scalar
+        |p'|.
+    x : Vector
+        Along the curve.
+    y : Vector
+        Where u is 0.
+    z : Vector
+        x x y.
+    l_v : Scalar
+        l'.
+    w : (Scalar, Scalar, Scalar)
+        y'.z, -x'.z and x'.y, per unit of v.
+    w_v : (Scalar, Scalar, Scalar)
+        Their derivatives.
+    """
 
     p: Vector
     l: Scalar  # noqa: E741
@@ -31,12 +51,28 @@ class Moving(NamedTuple):
     y: Vector
     z: Vector
     l_v: Scalar
-    w: tuple[Scalar, Scalar, Scalar]  # y'.z, -x'.z, x'.y
+    w: tuple[Scalar, Scalar, Scalar]
     w_v: tuple[Scalar, Scalar, Scalar]
 
 
 class Radius(NamedTuple):
-    """R at (u, v) and its derivatives."""
+    """R at (u, v) and its derivatives, lengths per powers of a radian.
+
+    Attributes
+    ----------
+    R : Scalar
+        The radius.
+    u : Scalar
+        Its derivative in u.
+    v : Scalar
+        In v.
+    uu : Scalar
+        Twice in u.
+    uv : Scalar
+        In both.
+    vv : Scalar
+        Twice in v.
+    """
 
     R: Scalar
     u: Scalar
@@ -52,8 +88,12 @@ class Tube:
 
     Attributes
     ----------
-    axis : p(v), three columns. field : m(v), three columns.
-    series : a0, then a_i and b_i in pairs, 2 N + 1 columns; all on the same intervals.
+    axis : Strip
+        p(v), three columns; all strips are on the same intervals.
+    field : Strip
+        m(v), three columns.
+    series : Strip
+        a0, then a_i and b_i in pairs, 2 N + 1 columns.
     """
 
     axis: Strip
