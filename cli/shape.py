@@ -37,8 +37,8 @@ def shape(
     `tiskel shape hand -n 16384 -o hand.ply --skeleton hand.skeleton.ply`
     """
     from tiskel import ShapeParams, make_shape, shape_graph
+    from tiskel.io.clouds import dump_cloud
     from tiskel.io.exports import EXPORTS
-    from tiskel.io.point_files import dump_cloud
     from tiskel.shapes.catalogue import SHAPES
 
     if name is None:

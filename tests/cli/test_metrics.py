@@ -9,8 +9,8 @@ from plyfile import PlyData
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import ContractionParams, ShapeParams, contract, extract_skeleton, make_shape, shape_graph
+from tiskel.io.clouds import dump_cloud
 from tiskel.io.contraction_file import dump_contraction
-from tiskel.io.point_files import dump_cloud
 from tiskel.io.skeleton_file import dump_skeleton
 
 
