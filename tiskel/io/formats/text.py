@@ -29,12 +29,7 @@ def read(data: bytes, name: str) -> Parsed:
     column without a name that counts the rows; and where a row has other
     columns than the first.
     """
-    table = table_of(data, name)
-    if '"' in table.rows[-1]:
-        table = replace(table, rows=unquoted(table.rows, name))
-    separator = separator_of(table.rows)
-    if separator and all(row.endswith(separator) for row in table.rows):
-        table = replace(table, rows=[row[:-1] for row in table.rows])
+    table, separator = _separated(table_of(data, name))
     names, table = _header(table, separator)
     width = _width(table, separator)
     columns = _columns(names, table, separator, width)
@@ -48,6 +43,15 @@ def read(data: bytes, name: str) -> Parsed:
         )
     others = {key: numbers[:, 3 + i] for i, key in enumerate(columns.others)}
     return Parsed(np.ascontiguousarray(numbers[:, :3]), properties=others, warnings=columns.warnings)
+
+
+def _separated(table: Table) -> tuple[Table, str | None]:
+    """Return the rows without quotes and without a separator at their ends, and the separator (None: white space)."""
+    rows = unquoted(table.rows, table.name) if '"' in table.rows[-1] else table.rows
+    separator = separator_of(rows)
+    if separator and all(row.endswith(separator) for row in rows):
+        rows = [row[:-1] for row in rows]
+    return replace(table, rows=rows), separator
 
 
 def _header(table: Table, separator: str | None) -> tuple[list[str] | None, Table]:
