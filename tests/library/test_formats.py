@@ -1,4 +1,4 @@
-"""File types behind the registry: PCD, NPY, PLY, meshes, gzip; and the small files of reported trouble."""
+"""File types behind the registry: NPY, PLY, meshes, gzip; and the small files of reported trouble."""
 
 import gzip
 import io
@@ -9,15 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
+from reference.pcd import POINTS, pcd_bytes
 from tiskel import TiskelError, load_cloud
 from tiskel.io.clouds import parse_cloud
-from tiskel.io.formats import FORMATS, SUFFIXES, lzf, numpy_arrays, obj, off, pcd, ply, stl
+from tiskel.io.formats import FORMATS, SUFFIXES, numpy_arrays, obj, off, ply, stl
 
 CASES = Path(os.environ.get("TISKEL_CASES", Path(__file__).parents[2] / ".." / "shared" / "cases"))
-POINTS = np.random.default_rng(5).random((40, 3)) * 10 + 5e6
 
 
 def test_every_suffix_belongs_to_one_format() -> None:
@@ -38,123 +36,6 @@ def test_standard_input_is_told_by_its_first_bytes(suffix: str) -> None:
         ".off": b"OFF 40 0 0\n" + b"1 2 3\n" * 40,
     }[suffix]
     assert len(parse_cloud(data, "-").points) == 40
-
-
-# -- PCD
-
-
-def packed(data: bytes) -> bytes:
-    """LZF of literals, and of one copy for every run of one byte that is long enough."""
-    out, i = bytearray(), 0
-    while i < len(data):
-        run = 1
-        while i + run < len(data) and run < 264 and data[i + run] == data[i]:
-            run += 1
-        out += bytes([0, data[i]])
-        i += 1
-        if run > 3:
-            length = run - 3  # of the copy, less 2; from one byte back
-            out += bytes([7 << 5, length - 7, 0]) if length >= 7 else bytes([length << 5, 0])
-            i += run - 1
-    return bytes(out)
-
-
-FIELDS = [
-    ("_", "u1", 3),
-    ("z", "f8", 1),
-    ("rgb", "u4", 1),
-    ("y", "f4", 1),
-    ("x", "f8", 1),
-    ("hist", "i2", 4),
-    ("_", "u1", 1),
-]
-VALUES = {"x": POINTS[:, 0], "y": POINTS[:, 1].astype("f4"), "z": POINTS[:, 2], "rgb": np.arange(40) + 2**31}
-
-
-def pcd_bytes(layout: str, **changes: str) -> bytes:
-    """A file of 40 points with padding, a field of four numbers, and axes in another order."""
-    entries = {
-        "VERSION": "0.7",
-        "FIELDS": " ".join(key for key, _, _ in FIELDS),
-        "SIZE": " ".join(kind[1] for _, kind, _ in FIELDS),
-        "TYPE": " ".join(kind[0].upper() for _, kind, _ in FIELDS),
-        "COUNT": " ".join(str(many) for _, _, many in FIELDS),
-        "WIDTH": "8",
-        "HEIGHT": "5",
-        "VIEWPOINT": "1 2 3 1 0 0 0",
-        "POINTS": "40",
-        "DATA": layout,
-    } | changes
-    header = "# .PCD v0.7 - Point Cloud Data file format\n" + "".join(f"{k} {v}\n" for k, v in entries.items() if v)
-    table = np.zeros(40, dtype=[(f"{key}{i}", f"<{kind}", (many,)) for i, (key, kind, many) in enumerate(FIELDS)])
-    for i, (key, _, _) in enumerate(FIELDS):
-        if key in VALUES:
-            table[f"{key}{i}"][:, 0] = VALUES[key]
-    if layout == "ascii":
-        rows = [" ".join(repr(n) for field in row for n in np.asarray(field).tolist()) for row in table.tolist()]
-        return header.encode() + "".join(row + "\n" for row in rows).encode()
-    if layout == "binary":
-        return header.encode() + table.tobytes()
-    flat = b"".join(table[key].tobytes() for key in table.dtype.names or ())
-    body = packed(flat)
-    return header.encode() + struct.pack("<II", len(body), len(flat)) + body
-
-
-@pytest.mark.parametrize("layout", ["ascii", "binary", "binary_compressed"])
-def test_pcd_of_every_layout_and_type(layout: str) -> None:
-    cloud = parse_cloud(pcd_bytes(layout), "a.pcd")
-    np.testing.assert_array_equal(cloud.points, np.stack([VALUES[axis] for axis in "xyz"], axis=1))
-    assert set(cloud.properties) == {"rgb"}
-    np.testing.assert_array_equal(cloud.properties["rgb"], VALUES["rgb"])
-
-
-PCD_BROKEN = {
-    "cut": (pcd_bytes("binary")[:-1], "promises 40 points"),
-    "cut text": (pcd_bytes("ascii")[:-200], "promises 40 points"),
-    "surplus": (pcd_bytes("binary") + b"x", "promises 40 points"),
-    "cut within the compressed data": (pcd_bytes("binary_compressed")[:-9], "compressed data are damaged"),
-    "nothing compressed": (
-        pcd_bytes("binary_compressed").partition(b"compressed\n")[0] + b"compressed\n",
-        "ends before",
-    ),
-    "billions": (pcd_bytes("binary", WIDTH="", HEIGHT="", POINTS="9" * 15), "promises 999999999999999 points"),
-    "beyond numbers": (pcd_bytes("binary", POINTS="9" * 5000), "POINTS '999"),
-    "two counts": (pcd_bytes("binary", POINTS="41"), "promises 41 points and 40"),
-    "no count": (pcd_bytes("binary", POINTS="", WIDTH=""), "neither POINTS nor WIDTH"),
-    "no points": (pcd_bytes("binary", POINTS="0"), "holds no points"),
-    "infinitely many of a field": (pcd_bytes("binary", COUNT="1 1 1e309 1 1 1 1"), "COUNT '1e309'"),
-    "too many of a field": (pcd_bytes("binary", COUNT="1 1 999999999999 1 1 1 1"), "promises 40 points"),
-    "fewer sizes": (pcd_bytes("binary", SIZE="8 8 8"), "differ in length"),
-    "unknown type": (pcd_bytes("binary", SIZE="3 8 4 4 8 2 1"), "'u3' is unknown"),
-    "no z": (pcd_bytes("binary", FIELDS="_ w rgb y x hist _"), "has no field z"),
-    "unknown layout": (pcd_bytes("binary", DATA="octal"), "DATA 'octal' is unknown"),
-    "no header": (b"1 2 3\n4 5 6\n", "no header that ends with DATA"),
-    "words": (pcd_bytes("ascii").replace(b"0 0 0 ", b"0 a 0 ", 1), "could not convert string 'a'"),
-}
-
-
-@pytest.mark.parametrize("name", PCD_BROKEN)
-def test_broken_pcd_is_refused_with_a_reason(name: str) -> None:
-    data, said = PCD_BROKEN[name]
-    with pytest.raises(TiskelError) as error:
-        pcd.read(data, "a.pcd")
-    assert said in str(error.value)
-
-
-@given(st.lists(st.tuples(st.integers(0, 255), st.integers(1, 400)), max_size=20))
-def test_lzf_gives_back_what_was_packed(runs: list[tuple[int, int]]) -> None:
-    data = b"".join(bytes([value]) * many for value, many in runs)
-    assert lzf.decompress(packed(data), len(data)) == data
-
-
-def test_lzf_copies_from_far_back_and_refuses_what_is_not_there() -> None:
-    there = bytes(range(32))
-    far = bytes([31]) + there + bytes([31]) + there[::-1] + bytes([3 << 5, 63])
-    assert lzf.decompress(far, 69) == there + there[::-1] + there[:5]
-    with pytest.raises(ValueError, match="before the start"):
-        lzf.decompress(bytes([0, 1, 1 << 5, 9]), 4)
-    with pytest.raises(ValueError, match="within a copy"):
-        lzf.decompress(bytes([0, 1, 7 << 5, 9]), 4)
 
 
 # -- NumPy
