@@ -6,7 +6,7 @@
 2. The centre of a fitted ellipse against the barycentre, on rings that are sampled more and more unevenly.
 3. Smoothness of a bent line and of a wavy one.
 
-Writes a picture of each; tests/library/test_demonstrations.py holds the numbers to what they should show.
+Writes a picture of each; tests/metrics/test_demonstrations.py holds the numbers to what they should show.
 """
 
 import sys

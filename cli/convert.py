@@ -19,9 +19,8 @@ def convert(source: o.Source, target: Target, sample: o.Sample = None, seed: o.S
     Clouds go to PLY, XYZ, PTS, CSV, TXT, NPY; a skeleton file to OBJ lines, SWC, GraphML, JSON or PLY; any stage file
     also gives its input cloud back: `tiskel convert curve.ply curve.swc`
     """
-    from tiskel.io.clouds import parse_cloud
+    from tiskel.io.clouds import dump_cloud, parse_cloud
     from tiskel.io.exports import EXPORTS
-    from tiskel.io.point_files import dump_cloud
     from tiskel.io.stages.skeleton import parse_skeleton
     from tiskel.io.stages.which import stage_of
     from tiskel.io.streams import read_bytes

@@ -38,8 +38,8 @@ def shape(
     """
     from tiskel import ShapeParams, make_shape, shape_graph
     from tiskel.gallery.catalogue import SHAPES
+    from tiskel.io.clouds import dump_cloud
     from tiskel.io.exports import EXPORTS
-    from tiskel.io.point_files import dump_cloud
 
     if name is None:
         typer.echo("\n".join(SHAPES))

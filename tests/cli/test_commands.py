@@ -100,7 +100,7 @@ def test_run_writes_every_file(tiskel: Runner, cloud: Path, tmp_path: Path) -> N
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["dumbbell", "links", "tree"])
 def test_shapes_go_through_run(name: str, tiskel: Runner, tmp_path: Path) -> None:
-    """All of them go through the same stages in tests/library/test_stages.py."""
+    """All of them go through the same stages in tests/pipeline/test_stages.py."""
     assert tiskel("shape", name, "-n", 1500, "-o", "a.ply", "--skeleton", "true.obj").returncode == 0
     done = tiskel("run", "a.ply", "-o", "out")
     assert done.returncode == 0, done.stderr.decode()

@@ -9,7 +9,7 @@ from plyfile import PlyData
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import ContractionParams, ShapeParams, contract, extract_skeleton, make_shape, shape_graph
-from tiskel.io.point_files import dump_cloud
+from tiskel.io.clouds import dump_cloud
 from tiskel.io.stages.contraction import dump_contraction
 from tiskel.io.stages.skeleton import dump_skeleton
 
@@ -85,7 +85,7 @@ def test_heat_maps_are_scalar_fields_and_pictures_are_drawn(
 
 
 def test_curves_of_other_programs_come_with_their_cloud(tiskel: Runner, skeletons: list[str]) -> None:
-    for suffix in ("obj", "swc"):  # tests/library/test_curves.py has them all
+    for suffix in ("obj", "swc"):  # tests/io/test_curves.py has them all
         tiskel("convert", "lbc.ply", f"line.{suffix}")
         done = tiskel("metrics", f"line.{suffix}", "--cloud", "y.ply")
         assert done.returncode == 0, done.stderr.decode()

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tiskel import Skeleton, TiskelError, load_curve, make_shape, read_skeleton, shape_graph
+from tiskel.io.clouds import dump_cloud
 from tiskel.io.exports import EXPORTS
 from tiskel.io.measurable import gather
-from tiskel.io.point_files import dump_cloud
 
 
 @pytest.fixture(scope="module")

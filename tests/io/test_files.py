@@ -27,9 +27,9 @@ from tiskel import (
     write_contraction,
     write_skeleton,
 )
-from tiskel.io import text
+from tiskel.io.clouds import dump_cloud
 from tiskel.io.exports import to_graphml, to_json, to_obj, to_swc
-from tiskel.io.point_files import SUFFIXES, dump_cloud
+from tiskel.io.formats import WRITTEN, numpy_arrays, ply, text
 from tiskel.io.stages.contraction import dump_contraction
 from tiskel.io.stages.skeleton import dump_skeleton
 
@@ -106,7 +106,7 @@ def test_a_stage_file_gives_its_input_cloud_back(contraction: Contraction, skele
         np.testing.assert_array_equal(load_cloud(tmp_path / name).points, contraction.cloud)
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", WRITTEN)
 def test_clouds_come_back_to_the_last_bit(suffix: str, tmp_path: Path, capsule: np.ndarray) -> None:
     path = tmp_path / f"cloud{suffix}"
     far = capsule / 3 + 4.5e6
@@ -175,13 +175,13 @@ TEXTS = {
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_text_dialects(name: str) -> None:
-    np.testing.assert_array_equal(text.parse_text(TEXTS[name].encode(), "a"), [[0, 1, 2], [3, 4, 5]])
+    np.testing.assert_array_equal(text.read(TEXTS[name].encode(), "a").points, [[0, 1, 2], [3, 4, 5]])
 
 
 @given(st.lists(st.tuples(*[st.floats(allow_nan=False, allow_subnormal=False)] * 3), min_size=1, max_size=20))
 def test_text_keeps_every_number(rows: list[tuple[float, float, float]]) -> None:
     points = np.array(rows)
-    np.testing.assert_array_equal(text.parse_text(text.dump_text(points), "a"), points)
+    np.testing.assert_array_equal(text.read(text.write(points), "a").points, points)
 
 
 def ply_bytes(count: int = 3, promised: int | None = None, form: str = "ascii") -> bytes:
@@ -211,7 +211,7 @@ BROKEN = {
     "only a header.csv": (b"x,y,z\n", "holds no points"),
     "latin.txt": ("0 1 2 \xe9\n".encode("latin-1"), "not text"),
     "noise.npy": (b"\x93NUMPY" + bytes(40), "not a valid NumPy file"),
-    "flat.npy": (text.dump_numpy(np.arange(5.0)), "must hold an array of shape (n, 3), got (5,)"),
+    "flat.npy": (numpy_arrays.write(np.arange(5.0)), "must hold an array of shape (n, 3), got (5,)"),
     "noise.npz": (b"PK not a zip", "not a valid NumPy file"),
     "cloud.docx": (b"x", "unknown kind of file '.docx'"),
     "cloud": (b"x", "unknown kind of file 'without a suffix'"),
@@ -229,10 +229,8 @@ def test_broken_files_are_refused_with_a_reason(name: str, tmp_path: Path) -> No
 
 @given(st.binary(max_size=300))
 def test_no_bytes_after_a_ply_header_cause_anything_but_a_reason(data: bytes) -> None:
-    from tiskel.io.clouds import _from_ply
-
     with pytest.raises(TiskelError):
-        _from_ply(b"ply\nformat binary_little_endian 1.0\n" + data, "a.ply")
+        ply.read(b"ply\nformat binary_little_endian 1.0\n" + data, "a.ply")
 
 
 @pytest.mark.parametrize("at", [0.1, 0.5, 0.9, 0.999])

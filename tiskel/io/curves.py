@@ -11,12 +11,14 @@ import numpy as np
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
 from tiskel.io import ply
-from tiskel.io.clouds import TEXT_FORMATS, parse_cloud
+from tiskel.io.clouds import parse_cloud
+from tiskel.io.formats import numpy_arrays, text
 from tiskel.io.stages.skeleton import parse_skeleton
 from tiskel.io.stages.which import stage_of
 from tiskel.io.streams import STANDARD, read_bytes
 
-FORMATS = (".ply", ".obj", ".swc", ".graphml", ".json", *TEXT_FORMATS, ".npy", ".npz")
+NODES_ALONE = (text.XYZ, text.PTS, text.CSV, numpy_arrays.NPY, numpy_arrays.NPZ)
+FORMATS = (".ply", ".obj", ".swc", ".graphml", ".json", *(suffix for kind in NODES_ALONE for suffix in kind.suffixes))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,47 @@
+"""The file types of clouds and meshes: one file each, one line each in the table below."""
+
+from collections.abc import Callable
+from pathlib import PurePath
+
+from tiskel.arrays import Points
+from tiskel.errors import TiskelError
+from tiskel.io.formats import numpy_arrays, obj, off, pcd, ply, stl, text
+from tiskel.io.formats.base import Format, Parsed
+
+__all__ = ["FORMATS", "SUFFIXES", "WRITTEN", "Format", "Parsed", "format_of", "writer_of"]
+
+FORMATS: tuple[Format, ...] = (
+    ply.PLY,
+    numpy_arrays.NPY,
+    numpy_arrays.NPZ,
+    text.XYZ,
+    text.PTS,
+    text.CSV,
+    pcd.PCD,
+    off.OFF,
+    obj.OBJ,
+    stl.STL,
+)
+BY_SUFFIX = {suffix: kind for kind in FORMATS for suffix in kind.suffixes}
+SUFFIXES = tuple(BY_SUFFIX)  #: of all files that are read
+WRITTEN = tuple(suffix for suffix, kind in BY_SUFFIX.items() if kind.write)  #: of all files that are written
+
+
+def format_of(name: str, data: bytes, by_content: bool = False) -> Format:
+    """Return the type of a file by its suffix, or by its first bytes (text where nothing else claims them)."""
+    if by_content:
+        return next((kind for kind in FORMATS if kind.sniff(data)), text.XYZ)
+    suffix = PurePath(name).suffix.lower()
+    if suffix not in BY_SUFFIX:
+        kind = repr(suffix) if suffix else "'without a suffix'"
+        raise TiskelError(f"{name}: unknown kind of file {kind}; known are {', '.join(SUFFIXES)}, and these with .gz")
+    return BY_SUFFIX[suffix]
+
+
+def writer_of(suffix: str) -> Callable[[Points], bytes]:
+    """Return what writes the type that a suffix (with its dot) asks for."""
+    kind = BY_SUFFIX.get(suffix.lower())
+    if kind is None or kind.write is None:
+        asked = repr(suffix) if suffix else "'a file without a suffix'"
+        raise TiskelError(f"a cloud cannot be written as {asked}; choose {', '.join(WRITTEN)}")
+    return kind.write

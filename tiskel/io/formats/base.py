@@ -1,0 +1,63 @@
+"""What a file type is to the registry, and what reading one gives."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tiskel.arrays import Indices, Points
+
+LONGEST_QUOTE = 160  #: characters of a file that a message repeats
+NO_FACES: Indices = np.empty((0, 3), np.int32)
+Properties = Mapping[str, npt.NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Parsed:
+    """What a file holds.
+
+    Attributes
+    ----------
+    points : (n, 3) float64, in the file's units; rows may be NaN or Inf. The corners, where there are faces.
+    faces : (m, 3) int32, triangles; none for a cloud.
+    properties : further columns of the file by name, (n,) each.
+    warnings : what had to be decided while reading.
+    """
+
+    points: Points
+    faces: Indices = field(default_factory=lambda: NO_FACES)
+    properties: Properties = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+def short(text: str) -> str:
+    """Return the first line of what a message repeats from a file, cut where it is long."""
+    line = (text.splitlines() or [""])[0]
+    return line if len(line) <= LONGEST_QUOTE else f"{line[:LONGEST_QUOTE]}..."
+
+
+def never(data: bytes) -> bool:
+    """Return False: a file type without a mark of its own in its first bytes."""
+    return False
+
+
+@dataclass(frozen=True)
+class Format:
+    """One type of file.
+
+    Attributes
+    ----------
+    name : as messages call it.
+    suffixes : lower case, with the dot.
+    read : bytes and the file's name (for messages) to what they hold; raises TiskelError.
+    write : points to bytes; None where the type is only read.
+    sniff : whether bytes are of this type; asked where there is no suffix, of standard input.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    read: Callable[[bytes, str], Parsed]
+    write: Callable[[Points], bytes] | None = None
+    sniff: Callable[[bytes], bool] = never

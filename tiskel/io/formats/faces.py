@@ -1,0 +1,38 @@
+"""Polygons of mesh files as triangles."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tiskel.arrays import Indices
+from tiskel.errors import TiskelError
+from tiskel.io.formats.base import NO_FACES
+
+
+def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any], count: int, name: str) -> Indices:
+    """Return triangles (m, 3) that fan out from the first corner of each polygon, in the order of the polygons.
+
+    Parameters
+    ----------
+    polygons : corners of each, counted from 0; fewer than three make no triangle.
+    count : corners that the file has.
+    name : of the file, for messages.
+
+    Raises TiskelError where a polygon names a corner that is not there.
+    """
+    if len(polygons) == 0:
+        return NO_FACES
+    try:
+        corners = np.concatenate([*polygons]).astype(np.int64)
+    except OverflowError:
+        raise TiskelError(f"{name}: a face names a vertex beyond all numbers; export it again") from None
+    if len(corners) and (corners.min() < 0 or corners.max() >= count):
+        wrong = corners.min() if corners.min() < 0 else corners.max()
+        raise TiskelError(f"{name}: a face names vertex {wrong}, there are {count}; export it again")
+    lengths = np.fromiter(map(len, polygons), np.int64, len(polygons))
+    triangles = np.maximum(lengths - 2, 0)
+    first = np.repeat(np.cumsum(lengths) - lengths, triangles)
+    step = np.arange(triangles.sum()) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    return np.stack([corners[first], corners[first + step + 1], corners[first + step + 2]], axis=1).astype(np.int32)

@@ -1,0 +1,72 @@
+"""Which columns of a table are x, y and z, by the names in its header."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from tiskel.errors import TiskelError
+from tiskel.io.formats.base import short
+
+AXES = ("x", "y", "z")
+UNIT = re.compile(r"\s*(\(.*\)|\[.*\]|[ _](um|mm|cm|dm|m|km|in|ft))$")
+PARAVIEW = re.compile(r"points?\w*:([012])")  #: Points:0, and Points_m_XYZ:0 as VeloView has it
+LONGEST_NAME = 40  #: characters of a name that may still be that of a coordinate
+INDEX = re.compile(r"|unnamed: ?\d+|index|idx|id|#")  #: names of a column that counts the rows
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Which columns are read.
+
+    Attributes
+    ----------
+    axes : of x, y and z.
+    others : name and column of the rest.
+    warnings : what had to be decided.
+    """
+
+    axes: tuple[int, int, int] = (0, 1, 2)
+    others: dict[str, int] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+def columns_of(names: Sequence[str], name: str) -> Columns:
+    """Return the columns that a header names.
+
+    Parameters
+    ----------
+    names : of all columns. x, y and z in either case count, alone, with a unit (X(m), x_mm), or as ParaView writes
+        them (Points:0); where there are three columns without these names, they are taken in order, and it is said.
+    name : of the file, for messages.
+
+    Raises TiskelError where more than three columns have none of these names.
+    """
+    axes = named(names)
+    if axes is not None:
+        return Columns(axes, {key: i for i, key in enumerate(names) if i not in axes and key})
+    rest = [i for i, key in enumerate(names) if not INDEX.fullmatch(key.lower())]
+    found = ", ".join(key or "(no name)" for key in names)
+    misplaced = any(_plain(names[i]) in AXES and AXES[at] != _plain(names[i]) for at, i in enumerate(rest[:3]))
+    if len(rest) != 3 or misplaced:
+        raise TiskelError(f"{name}: its columns are {short(found)}; name those of the coordinates x, y and z")
+    return Columns((rest[0], rest[1], rest[2]), {}, (f"{name}: its columns {short(found)} were taken as x, y and z",))
+
+
+def named(names: Sequence[str]) -> tuple[int, int, int] | None:
+    """Return the columns of x, y and z; None where one of them is missing or there twice in the plainest spelling."""
+    spellings: tuple[Callable[[str], str], ...] = (str.lower, _plain, _paraview)
+    for spelling in spellings:
+        spelt = [spelling(name) for name in names]
+        if all(spelt.count(axis) == 1 for axis in AXES):
+            return spelt.index("x"), spelt.index("y"), spelt.index("z")
+    return None
+
+
+def _plain(name: str) -> str:
+    """Return the name in lower case without a unit."""
+    return UNIT.sub("", name.lower()) if len(name) <= LONGEST_NAME else name
+
+
+def _paraview(name: str) -> str:
+    found = PARAVIEW.fullmatch(name.lower())
+    return AXES[int(found[1])] if found else ""
