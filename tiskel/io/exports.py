@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-import tiskel
 from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.skeleton import Skeleton
+from tiskel.version import version
 
 
 def to_obj(s: Skeleton) -> bytes:
     """Return vertices and one line element per branch; CloudCompare and MeshLab show these, unlike PLY edges."""
-    lines = [f"# tiskel {tiskel.__version__} skeleton", *(f"v {x!r} {y!r} {z!r}" for x, y, z in s.nodes.tolist())]
+    lines = [f"# tiskel {version()} skeleton", *(f"v {x!r} {y!r} {z!r}" for x, y, z in s.nodes.tolist())]
     lines += ["l " + " ".join(str(node + 1) for node in branch) for branch in s.branches if len(branch) > 1]
     return ("\n".join(lines) + "\n").encode()
 
@@ -22,7 +22,7 @@ def to_obj(s: Skeleton) -> bytes:
 def to_json(s: Skeleton) -> bytes:
     """Return one document with nodes, edges, radius, branches, the node of every point, and counts."""
     document = {
-        "tiskel": tiskel.__version__,
+        "tiskel": version(),
         "nodes": s.nodes.tolist(),
         "edges": s.edges.tolist(),
         "radius": s.radius.tolist(),
@@ -43,7 +43,7 @@ def to_swc(s: Skeleton) -> bytes:
     order, parent = spanning_forest(s)
     name = {node: i + 1 for i, node in enumerate(order)}
     kept = {tuple(sorted((node, up))) for node, up in parent.items() if up >= 0}
-    lines = [f"# tiskel {tiskel.__version__} skeleton", "# id type x y z radius parent"]
+    lines = [f"# tiskel {version()} skeleton", "# id type x y z radius parent"]
     lines += [f"# loop {name[a]} {name[b]}" for a, b in s.edges.tolist() if (a, b) not in kept]
     for node in order:
         x, y, z = s.nodes[node].tolist()

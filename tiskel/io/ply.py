@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from plyfile import PlyData, PlyElement, PlyParseError
 
-import tiskel
 from tiskel.errors import TiskelError
+from tiskel.version import version
 
 Columns = Mapping[str, npt.NDArray[Any]]
 MAGIC = b"ply"
@@ -73,7 +73,7 @@ def ragged(rows: Sequence[npt.NDArray[np.int32]]) -> npt.NDArray[Any]:
 
 def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -> bytes:
     """Return a binary little-endian file; facts become comment lines of JSON."""
-    comments = [f"tiskel {tiskel.__version__} {stage}"]
+    comments = [f"tiskel {version()} {stage}"]
     everything = {"format": FORMAT, **facts}
     comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in everything.items()]
     out = io.BytesIO()

@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-import tiskel
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import DEGREE, Strip
 from tiskel.io import ply
@@ -30,6 +29,7 @@ from tiskel.params import SurfaceParams
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.tube import V_STOP, Tube
+from tiskel.version import version
 
 STAGE, FORMAT = "surface", 1
 
@@ -46,7 +46,7 @@ def dump_surfaces(
 ) -> bytes:
     """Return the bytes of a stage file: the same bytes for the same surfaces."""
     document = {
-        "tiskel": tiskel.__version__,
+        "tiskel": version(),
         "stage": STAGE,
         "format": FORMAT,
         "source": source or {},
