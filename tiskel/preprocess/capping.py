@@ -6,6 +6,7 @@ from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
+from tiskel.geometry.spacing import spacings_from
 
 NEIGHBOURS = 16
 SMALLEST_RIM = 12  # points; smaller groups of boundary points are noise
@@ -23,7 +24,7 @@ def cap_points(points: Points) -> Points:
     """
     k = min(NEIGHBOURS, len(points))
     neighbours, squares = nearest_neighbours(points, k)
-    spacing = float(np.median(np.sqrt(squares[:, min(4, k - 1)])))
+    spacing = float(np.median(spacings_from(squares)))
     boundary = np.flatnonzero(widest_gaps(points, neighbours) > OPEN_ANGLE).astype(np.int32)
     discs = [_disc(points[rim], spacing) for rim in _groups(boundary, neighbours) if len(rim) >= SMALLEST_RIM]
     return np.concatenate([np.empty((0, 3)), *discs])

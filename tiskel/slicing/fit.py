@@ -10,6 +10,7 @@ from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import Strip
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.spacing import spacing_of
 from tiskel.params import SurfaceParams
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
@@ -17,15 +18,15 @@ from tiskel.slicing.field import fit_field
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.mesh import mesh_report
 from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
-from tiskel.slicing.rings import Ring, around, cut, frames_along, spacing_of
+from tiskel.slicing.rings import Ring, around, cut, frames_along
 from tiskel.slicing.sections import Case, Section, fit_section
 from tiskel.slicing.series import chosen_order, fit_sections, joined_series, without_unlike
 from tiskel.surfaces.tube import V_STOP, Tube
 
 TINY = 1e-300  # for quotients that may be of nothing
 LEAST_SLICES = 4  # fewer do not determine how a surface changes along its curve
-SLAB = 1.5  # spacings that a slab is thick to each side, at least
-LINKED, LINKED_RADII = 4.0, 0.3  # spacings, or radii, between neighbours of one ring
+SLAB = 0.75  # spacings that a slab is thick to each side, at least
+LINKED, LINKED_RADII = 2.0, 0.3  # spacings, or radii, between neighbours of one ring
 REACH = 3.0  # radii of the curve's nearest points: how far a section looks where points have no nodes
 INTERVALS = 4, 200  # of the splines; one for every two slices
 RECENTRINGS, CENTRE_ORDER = 2, 2  # rounds, and the order of the series whose first terms say where the middle is

@@ -55,11 +55,6 @@ def cut(
     return found
 
 
-def spacing_of(points: Points) -> float:
-    """Return the median distance to the nearest other point."""
-    return float(np.median(cKDTree(points).query(points, k=2)[0][:, 1])) if len(points) > 1 else 0.0
-
-
 def ring_of(plane: Numbers, link: float) -> Indices:
     """Return which points (k, 2) of a section, its centre at the origin, are the ring around the centre.
 

@@ -10,10 +10,10 @@ from tiskel.arrays import Indices, Mask, Numbers, Points
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.rings import Rings
+from tiskel.geometry.spacing import spacings_from
 
 NORMAL_NEIGHBOURS = 12  # the point included; the plane through them
 AREA_NEIGHBOURS = 8  # in a disc about the point
-SPACING_NEIGHBOURS = 4  # as many lie within 1.13 spacings on an even surface
 FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour
 ALONG_NORMALS = 0.75  # cosine: such a step leaves the surface at both of its ends
 
@@ -113,7 +113,7 @@ def neighbour_network(points: Points, k: int, axes: Numbers | None = None) -> Ne
     here = np.abs(np.einsum("nkc,nc->nk", steps, normals))
     there = np.abs(np.einsum("nkc,nkc->nk", steps, normals[neighbours]))
     disc = min(AREA_NEIGHBOURS, neighbours.shape[1] - 1)
-    spacings = lengths[:, min(SPACING_NEIGHBOURS, disc)] / np.sqrt(SPACING_NEIGHBOURS / np.pi)
+    spacings = spacings_from(squares)
     kept = np.minimum(here, there) < ALONG_NORMALS * lengths
     kept &= lengths <= FARTHEST * np.minimum(spacings[:, None], spacings[neighbours])
     kept[:, 0] = False
