@@ -20,7 +20,10 @@ from typing import Any, TypeVar
 
 import taichi as ti
 
+from .errors import TiskelError
+
 THREADS_VARIABLE = "TISKEL_NUM_THREADS"
+MOST_THREADS = 1024  # Taichi starts as many as it is told, until the system refuses and it aborts
 CACHE_VARIABLE = "TI_OFFLINE_CACHE_FILE_PATH"
 
 _started_in: list[int] = []
@@ -31,16 +34,24 @@ def available_threads() -> int:
     """Return the threads that the affinity mask and the cgroup quota allow, at least one."""
     affinity = getattr(os, "sched_getaffinity", None)
     count = len(affinity(0)) if affinity else os.cpu_count() or 1
-    return max(1, min(count, _cgroup_quota() or count))
+    return max(1, min(count, _cgroup_quota() or count, MOST_THREADS))
 
 
 def requested_threads() -> int:
-    """Return TISKEL_NUM_THREADS, or what the machine allows where it is unset."""
+    """Return TISKEL_NUM_THREADS, or what the machine allows where it is unset.
+
+    Raises
+    ------
+    TiskelError
+        Where the variable is no whole number from 1 to 1024.
+    """
     value = os.environ.get(THREADS_VARIABLE)
     if value is None:
         return available_threads()
-    if not value.isdigit() or int(value) < 1:
-        raise ValueError(f"{THREADS_VARIABLE} must be a positive whole number, got {value!r}; unset or correct it")
+    if not (value.isascii() and value.isdigit() and 1 <= int(value) <= MOST_THREADS):
+        raise TiskelError(
+            f"{THREADS_VARIABLE} must be a whole number from 1 to {MOST_THREADS}, got {value!r}; correct or unset it"
+        )
     return int(value)
 
 

@@ -97,3 +97,19 @@ def test_a_home_that_cannot_be_written_is_no_obstacle(tmp_path: Path) -> None:
         [PROGRAM, "contract", "y.ply"], cwd=tmp_path, env=environment, check=True, capture_output=True
     )
     assert done.stdout.startswith(b"ply")
+
+
+@pytest.fixture(scope="module")
+def body(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write a cloud of 300 points."""
+    path = tmp_path_factory.mktemp("body") / "y.ply"
+    subprocess.run([PROGRAM, "shape", "y", "-n", "300", "-o", path], check=True, capture_output=True)
+    return path
+
+
+@pytest.mark.parametrize("value", ["many", "0", "-1", "", " 2", "1.5", "²", "1025"])
+def test_a_wrong_number_of_threads_is_one_error_line(value: str, tiskel: Runner, body: Path) -> None:
+    line = one_error_line(tiskel("contract", body, TISKEL_NUM_THREADS=value))
+    assert (
+        line == f"error: TISKEL_NUM_THREADS must be a whole number from 1 to 1024, got {value!r}; correct or unset it"
+    )
