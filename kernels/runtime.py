@@ -6,13 +6,10 @@ maths, which would change results; and it neither survives a fork nor starts
 outside the main thread.
 """
 
-import atexit
 import contextlib
 import functools
 import io
 import os
-import shutil
-import tempfile
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -21,10 +18,10 @@ from typing import Any, TypeVar
 import taichi as ti
 
 from .errors import TiskelError
+from .folders import make_cache_folder
 
 THREADS_VARIABLE = "TISKEL_NUM_THREADS"
 MOST_THREADS = 1024  # Taichi starts as many as it is told, until the system refuses and it aborts
-CACHE_VARIABLE = "TI_OFFLINE_CACHE_FILE_PATH"
 
 _started_in: list[int] = []
 _F = TypeVar("_F", bound=Callable[..., Any])
@@ -66,6 +63,7 @@ def ensure() -> None:
         return
     if threading.current_thread() is not threading.main_thread():
         raise RuntimeError("the first tiskel kernel must run in the main thread; call tiskel once there first")
+    make_cache_folder()
     with contextlib.redirect_stdout(io.StringIO()):
         ti.init(
             arch=ti.cpu,
@@ -74,7 +72,6 @@ def ensure() -> None:
             fast_math=False,
             cpu_max_num_threads=requested_threads(),
             log_level="error",
-            **_cache_options(),
         )
     _started_in.append(os.getpid())
 
@@ -88,35 +85,6 @@ def started(kernel: _F) -> _F:
         return kernel(*arguments)
 
     return call  # type: ignore[return-value]
-
-
-def cache_folder() -> Path:
-    """Return the folder of compiled kernels: TI_OFFLINE_CACHE_FILE_PATH, or Taichi's own under the cache home."""
-    given = os.environ.get(CACHE_VARIABLE)
-    return Path(given) if given else _taichi_home() / "ticache"
-
-
-def _taichi_home() -> Path:
-    """Return the folder that Taichi makes for itself while it starts, whatever the location of its cache."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "taichi"
-
-
-def _cache_options() -> dict[str, Any]:
-    """Keep Taichi from crashing where its folder cannot be made, and from complaining where its cache cannot."""
-    if not _writable(_taichi_home()):
-        instead = tempfile.mkdtemp(prefix="tiskel-")
-        atexit.register(shutil.rmtree, instead, ignore_errors=True)
-        os.environ["XDG_CACHE_HOME"] = instead
-    return {} if _writable(cache_folder()) else {"offline_cache": False}
-
-
-def _writable(folder: Path) -> bool:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
 
 
 def _cgroup_quota() -> int | None:
