@@ -16,7 +16,7 @@ GEOMETRY = f"{BASE} kernels geometry"
 STAGES = f"{GEOMETRY} methods contraction skeleton"
 ALLOWED = {
     "kernels": "",
-    "errors": "",
+    "errors": "kernels",  # the error is defined there, so that a kernel can raise it
     "version": "",
     "timing": "",
     "params": "errors",

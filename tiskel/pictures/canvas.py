@@ -16,10 +16,7 @@ DPI = 110
 
 
 def new_figure(width: float, height: float) -> Any:
-    """Return an empty matplotlib figure, in inches."""
-    import matplotlib
-
-    matplotlib.use("Agg")
+    """Return an empty matplotlib figure, in inches; without pyplot it needs no backend, and leaves the user's alone."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
