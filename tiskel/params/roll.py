@@ -22,6 +22,17 @@ class RollParams:
     object in the axes of the sphere's own frame at the contact ("sphere"), or
     of the sphere in the axes of the cloud ("world"); velocities are those of
     the material at the contact and have no part along the normal.
+
+    Examples
+    --------
+    >>> from tiskel import RollParams, TiskelError
+    >>> RollParams(side="inside", omega=(0, 2, 0)).sigma
+    -1.0
+    >>> try:
+    ...     RollParams(rate=0)
+    ... except TiskelError as error:
+    ...     print(error)
+    rate must be a positive number, got 0
     """
 
     model: Model = "global"
@@ -59,5 +70,5 @@ class RollParams:
 
     @property
     def sigma(self) -> float:
-        """1 outside, -1 inside."""
+        """The side as a sign: 1 outside, -1 inside."""
         return 1.0 if self.side == "outside" else -1.0
