@@ -29,7 +29,7 @@ class ShapeParams:
     noise: float = 0.0  #: standard deviation of isotropic Gaussian noise, in smallest radii of the shape
     missing: float = 0.0  #: share of the surface that is cut out in patches
     uneven: float = 1.0  #: ratio of the highest to the lowest density, along the longest axis
-    seed: int = 0
+    seed: int = 0  #: of everything random
 
     def __post_init__(self) -> None:
         if self.count < 1:

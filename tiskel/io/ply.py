@@ -150,7 +150,7 @@ def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
 
 
 def source_of(data: bytes, stage: str, name: str) -> dict[str, str]:
-    """Return the name and SHA-256 of the cloud that the bytes of a stage file were made from."""
+    """Return name and SHA-256 of the cloud that the bytes of a stage file were made from; see :func:`facts`."""
     return dict(facts(parse(data, name), stage, name).get("source", {}))
 
 

@@ -32,7 +32,7 @@ SPAN = {"angle": (0.0, 1.0), "curvature": (-1 / 3, 1 / 3)}  # what values can be
 class Distribution:
     """The shape of a distribution; its values have no unit."""
 
-    mean: float
+    mean: float  #: arithmetic mean
     spread: float  #: standard deviation
     skewness: float  #: 0 where there is no spread
     peaks: int  #: number of peaks of the histogram
@@ -216,20 +216,20 @@ def distance_from_uniform(angles: Numbers) -> float:
 
 
 def distribution(values: Numbers, kind: str, params: StabilityParams) -> Distribution:
-    """Return mean, spread, skewness and peaks of angles or of changes of curvature."""
+    """Return mean, spread, skewness and peaks of values (m,); kind "angle" or "curvature" says what they can be."""
     mean, spread = float(values.mean()), float(values.std())
     skewness = float(((values - mean) ** 3).mean() / spread**3) if spread > 0 else 0.0
     return Distribution(mean, spread, skewness, peaks(values, SPAN[kind], params))
 
 
 def peaks(values: Numbers, span: tuple[float, float], params: StabilityParams) -> int:
-    """Return the number of peaks of a histogram that falls by the prominence on both sides of each."""
+    """Return the number of peaks of the histogram of values (m,): it falls by the prominence on both sides of each."""
     shares = np.histogram(values, params.bins, span)[0] / len(values)
     return len(find_peaks(np.concatenate([[0], shares, [0]]), prominence=params.prominence)[0])
 
 
 def verdict(distance: float, median: float, angles: Numbers, params: StabilityParams) -> tuple[bool, str]:
-    """Return whether a step is stable, and why or why not."""
+    """Return whether a step is stable, and why: by distance, median change of curvature and angles (m,)."""
     if distance > params.distance:
         return False, f"{_why_not(angles)} (distance {distance:.3f}, at most {params.distance})"
     if median > params.curvature:

@@ -34,7 +34,7 @@ class ConditioningParams:
     cap: bool = False  #: close open tube ends with flat discs of points
     noise: float = 0.0  #: standard deviation of Gaussian noise, as a share
     noise_kind: NoiseKind = "coordinates"  #: of what the share is: see :func:`with_noise`
-    seed: int = 0
+    seed: int = 0  #: of subset and noise
 
     def __post_init__(self) -> None:
         if self.crop is not None:

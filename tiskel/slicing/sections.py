@@ -170,7 +170,21 @@ def solved(basis: Numbers, r: Numbers, weights: Numbers, held: Numbers) -> Numbe
 
 
 def robust_weights(ring: Ring, basis: Numbers, order: int) -> Numbers:
-    """Return (k,) the weights of points after Huber: 1, or less for those that are far off."""
+    """Return (k,) the weights of the points of a ring: 1, or less for those that are far off the series.
+
+    Parameters
+    ----------
+    ring : Ring
+        The points.
+    basis : (k, 2 N + 4) float64
+        The columns of the fit.
+    order : int
+        The order N of the series.
+
+    References
+    ----------
+    P. Huber: Robust estimation of a location parameter. Annals of Mathematical Statistics 35(1), 1964.
+    """
     r, weights, held = ring.r, np.ones(len(ring.r)), held_in_gaps(ring.u, order)
     for _ in range(ROUNDS):
         misfit = np.abs(r - basis @ solved(basis, r, weights, held))
@@ -180,7 +194,17 @@ def robust_weights(ring: Ring, basis: Numbers, order: int) -> Numbers:
 
 
 def left_out_error(v: float, ring: Ring, order: int) -> float:
-    """Return the mean square distance of each point from the series through the others, in squared mean radii."""
+    """Return the mean square distance of each point from the series through the others, in squared mean radii.
+
+    Parameters
+    ----------
+    v : float
+        The place of the slice, from 0 to pi.
+    ring : Ring
+        Its points.
+    order : int
+        The order of the series.
+    """
     basis = basis_of(ring, v, order)
     weights = robust_weights(ring, basis, order)
     held = held_in_gaps(ring.u, order)

@@ -163,7 +163,15 @@ def _counts(column: Numbers) -> bool:
 
 
 def write(points: Points, separator: str = " ") -> bytes:
-    """Return points (n, 3), one per line, with as many digits as it takes to read the same numbers back."""
+    """Return points (n, 3), one per line, with as many digits as it takes to read the same numbers back.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud.
+    separator : str
+        What stands between the coordinates.
+    """
     return "".join(separator.join(map(repr, row)) + "\n" for row in points.tolist()).encode()
 
 
