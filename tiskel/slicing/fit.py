@@ -65,8 +65,8 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
 
     Examples
     --------
-    >>> from tiskel import SurfaceParams, ShapeParams, fit_surface, make_shape, shape_graph
-    >>> cloud, true = make_shape(shape_graph("banana"), ShapeParams(count=2000))
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_surface, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("banana"), ShapeParams(count=1000))
     >>> surfaces = fit_surface(true, SurfaceParams(interval=0.05))
     >>> len(surfaces), surfaces[0].order, surfaces[0].error < 0.01
     (1, 3, True)

@@ -48,8 +48,8 @@ class FittedSurface:
 
     Examples
     --------
-    >>> from tiskel import SurfaceParams, ShapeParams, fit_surface, make_shape, shape_graph
-    >>> true = make_shape(shape_graph("banana"), ShapeParams(count=2000))[1]
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_surface, make_shape, shape_graph
+    >>> true = make_shape(shape_graph("banana"), ShapeParams(count=1000))[1]
     >>> surface = fit_surface(true, SurfaceParams(interval=0.05))[0]
     >>> surface.frame, surface.cases(), surface.warnings
     ('m', {'fitted': 19}, ())
@@ -109,8 +109,8 @@ class Surfaces:
 
     Examples
     --------
-    >>> from tiskel import SurfaceParams, ShapeParams, fit_surface, make_shape, shape_graph
-    >>> true = make_shape(shape_graph("banana"), ShapeParams(count=2000))[1]
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_surface, make_shape, shape_graph
+    >>> true = make_shape(shape_graph("banana"), ShapeParams(count=1000))[1]
     >>> surfaces = fit_surface(true, SurfaceParams(interval=0.05))
     >>> [surface.name for surface in surfaces], surfaces.rejected, surfaces.named(None) is surfaces[0]
     (['0'], {}, True)
