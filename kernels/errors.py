@@ -2,6 +2,16 @@
 
 
 class TiskelError(Exception):
-    """The input or the run failed; the message says what, which value, and what to do."""
+    """The input or the run failed; the message says what, which value, and what to do.
+
+    Examples
+    --------
+    >>> from tiskel import TiskelError, load_cloud
+    >>> try:
+    ...     load_cloud("missing.xyz")
+    ... except TiskelError as error:
+    ...     print(error)
+    no file missing.xyz; check the path
+    """
 
     __module__ = "tiskel.errors"  # where callers find it

@@ -43,8 +43,34 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
     """Fit a Fourier surface around every branch of a skeleton (Wen et al. 2025; see :mod:`tiskel.surfaces.tube`).
 
     Of a tiskel skeleton every slice sees the points of its branch only; of a
-    curve from elsewhere, with its ``cloud`` (n, 3), what is around it. Raises
-    TiskelError where no branch has a surface, with the reason of each.
+    curve from elsewhere, what is around it.
+
+    Parameters
+    ----------
+    skeleton : Skeleton or CurveGraph
+        The curve, in any unit.
+    params : SurfaceParams, optional
+        The settings.
+    cloud : (n, 3) float64, optional
+        The cloud around a curve from elsewhere, in its unit; a skeleton brings its own.
+
+    Returns
+    -------
+    Surfaces
+        One surface per branch, and the reason for every branch without.
+
+    Raises
+    ------
+    TiskelError
+        Where a curve comes without its cloud, or no branch has a surface; the message gives the reason of each.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_surface, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("banana"), ShapeParams(count=1000))
+    >>> surfaces = fit_surface(true, SurfaceParams(interval=0.05))
+    >>> len(surfaces), surfaces[0].order, surfaces[0].error < 0.01
+    (1, 3, True)
     """
     params = params or SurfaceParams()
     if isinstance(skeleton, Skeleton):
@@ -134,7 +160,7 @@ def _fitted(
 
 
 def places_of(count: int) -> Numbers:
-    """Return (count,) the places of slices: the middles of as many even parts of the curve."""
+    """Return (count,) v of the slices: the middles of as many even parts of the curve."""
     return np.asarray((np.arange(count) + 0.5) / count * V_STOP)
 
 

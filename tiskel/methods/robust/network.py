@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
@@ -59,15 +60,22 @@ class Network:
         """The median spacing."""
         return float(np.median(self.spacings))
 
-    def graph(self, weights: Numbers) -> sparse.csr_array:
-        """Return the upper triangle of the graph's matrix."""
+    @cached_property
+    def links(self) -> sparse.csr_array:
+        """The upper triangle of the graph's matrix, ones; its data are in the order of the edges."""
         count = len(self.points)
-        return sparse.coo_array((weights, (self.edges[:, 0], self.edges[:, 1])), shape=(count, count)).tocsr()
+        ones = np.ones(len(self.edges))
+        return sparse.coo_array((ones, (self.edges[:, 0], self.edges[:, 1])), shape=(count, count)).tocsr()
+
+    @cached_property
+    def component(self) -> Indices:
+        """(n,) the connected component of every point."""
+        return np.asarray(connected_components(self.links, directed=False)[1], np.int32)
 
     @cached_property
     def averaging(self) -> sparse.csr_array:
         """The matrix (n, n) that replaces values by their mean over a point and its neighbours."""
-        half = self.graph(np.ones(len(self.edges)))
+        half = self.links
         whole = sparse.csr_array(half + half.T + sparse.eye_array(len(self.points), format="csr"))
         return sparse.csr_array(sparse.diags_array(1 / whole.sum(axis=1)) @ whole)
 
