@@ -60,7 +60,7 @@ def common(
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop.")
     ] = False,
 ) -> None:
-    pass
+    """Take the options that come before the command."""
 
 
 def main() -> None:

@@ -97,6 +97,7 @@ class Made:
     history: bool
 
     def stage_files(self) -> dict[str, Callable[[], bytes]]:
+        """Return what makes each stage file and export, by name."""
         from tiskel.io.exports import to_json, to_obj, to_swc
         from tiskel.io.stages.contraction import dump_contraction
         from tiskel.io.stages.heat import dump_heat
@@ -114,6 +115,7 @@ class Made:
         }
 
     def documents(self) -> dict[str, Callable[[], bytes]]:
+        """Return what makes each document, by name."""
         page = partial(
             report, self.cloud.name, self.contraction, self.skeleton, self.quality, self.stability, self.rolled
         )
@@ -126,6 +128,7 @@ class Made:
         }
 
     def pictures(self) -> dict[str, bytes]:
+        """Return the pictures, by name."""
         from tiskel.pictures.quality import quality_picture
         from tiskel.pictures.skeleton import skeleton_picture
         from tiskel.pictures.stability import stability_picture

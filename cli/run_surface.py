@@ -45,11 +45,13 @@ class Rolled:
         return files | ({"path.csv": lambda: to_csv(self.runs)} if self.runs else {})
 
     def documents(self) -> dict[str, dict[str, Any]]:
+        """Return the documents of the runs, by name."""
         if self.surface is None or not self.runs:
             return {}
         return {"roll.json": summary(self.surface.name, list(self.runs))}
 
     def pictures(self, title: str) -> dict[str, bytes]:
+        """Return the pictures of surfaces and runs, by name."""
         if self.surfaces is None or self.surface is None:
             return {}
         from tiskel.pictures.rolling import rolling_picture

@@ -13,8 +13,6 @@ from tiskel.metrics.barcode import barcode
 from tiskel.metrics.loops import count_loops
 from tiskel.metrics.subject import make_subject
 
-GENERATOR = np.random.default_rng(6)
-
 
 def shape(name: str, count: int = 3000, **degraded: float) -> tuple[Points, Points]:
     """Return a cloud, and the nearest place on its true skeleton for each point."""
@@ -31,7 +29,8 @@ def test_areas_add_up_to_the_surface() -> None:
 
 
 def test_normals_of_a_sphere_point_outward_from_any_target() -> None:
-    directions = GENERATOR.normal(size=(800, 3))
+    generator = np.random.default_rng(6)
+    directions = generator.normal(size=(800, 3))
     points = directions / np.linalg.norm(directions, axis=1)[:, None]
     for target in ([0.0, 0, 0], [0.0, 0, 3]):
         surface = oriented_cloud(points, np.broadcast_to(target, points.shape))
@@ -41,9 +40,10 @@ def test_normals_of_a_sphere_point_outward_from_any_target() -> None:
 
 
 def test_signs_pass_along_a_chain() -> None:
+    generator = np.random.default_rng(6)
     turn = np.linspace(0, 3, 40)
     normals = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
-    flipped = normals * np.where(GENERATOR.random(40) < 0.5, -1.0, 1.0)[:, None]
+    flipped = normals * np.where(generator.random(40) < 0.5, -1.0, 1.0)[:, None]
     neighbours = np.stack([np.arange(40), np.clip(np.arange(40) + 1, 0, 39)], axis=1).astype(np.int32)
     sign, part = propagated_signs(neighbours, flipped)
     agreed = flipped * sign[:, None]
@@ -59,7 +59,8 @@ def test_two_parts_get_their_signs_apart() -> None:
 
 def test_an_open_patch_has_no_inside() -> None:
     """A bent sheet: whatever its normals, there is nothing behind it."""
-    flat = GENERATOR.random((1500, 2))
+    generator = np.random.default_rng(6)
+    flat = generator.random((1500, 2))
     sheet = np.stack([flat[:, 0], flat[:, 1], 0.2 * np.sin(3 * flat[:, 0])], axis=1)
     surface = oriented_cloud(sheet, np.broadcast_to(sheet.mean(axis=0), sheet.shape))
     assert not surface.trusted
@@ -161,11 +162,12 @@ def test_large_clouds_are_thinned_by_seed_and_it_is_said() -> None:
 
 
 def test_ring_areas_of_a_square_grid() -> None:
+    generator = np.random.default_rng(6)
     from tiskel.geometry.neighbours import cloud_rings
 
     x, y = np.meshgrid(np.arange(12.0), np.arange(12.0))
     points = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
-    points[:, :2] += GENERATOR.normal(size=(144, 2)) * 1e-3  # so that the triangulation is unique
+    points[:, :2] += generator.normal(size=(144, 2)) * 1e-3  # so that the triangulation is unique
     inner = ((points[:, :2] > 2) & (points[:, :2] < 9)).all(axis=1)
     # a vertex of a triangulated unit grid has 4 to 8 triangles of area 1/2, on average 6: a third of 3
     assert ring_areas(points, cloud_rings(points, 12))[inner].mean() == pytest.approx(1, rel=0.05)

@@ -5,7 +5,6 @@ import pytest
 
 from tiskel.geometry.neighbours import principal_axes
 
-GENERATOR = np.random.default_rng(3)
 SHAPES: dict[str, list[float]] = {
     "ball": [1, 1, 1],
     "plate": [1, 1, 0],
@@ -17,8 +16,9 @@ SHAPES: dict[str, list[float]] = {
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_axes_are_eigenvectors_of_the_covariance(name: str) -> None:
-    points = GENERATOR.normal(size=(200, 3)) * SHAPES[name] + 5.0
-    neighbours = GENERATOR.integers(200, size=(100, 12)).astype(np.int32)
+    generator = np.random.default_rng(3)
+    points = generator.normal(size=(200, 3)) * SHAPES[name] + 5.0
+    neighbours = generator.integers(200, size=(100, 12)).astype(np.int32)
     values, axes = principal_axes(points, neighbours)
     for i, rows in enumerate(neighbours):
         covariance = np.cov(points[rows].T, bias=True)

@@ -11,7 +11,6 @@ from tiskel.kernels import coverage as kernel
 from tiskel.metrics import boundedness
 from tiskel.metrics.centredness import slab_members
 
-GENERATOR = np.random.default_rng(8)
 AREAS = boundedness.cell_areas(kernel.SIDE)
 
 
@@ -22,16 +21,18 @@ def cells(directions: Points) -> np.ndarray:
 
 
 def test_cells_of_directions() -> None:
-    directions = np.concatenate([GENERATOR.normal(size=(3000, 3)), np.eye(3), -np.eye(3), np.ones((1, 3))])
+    generator = np.random.default_rng(8)
+    directions = np.concatenate([generator.normal(size=(3000, 3)), np.eye(3), -np.eye(3), np.ones((1, 3))])
     assert cells(directions).tolist() == [cell_of(d, kernel.SIDE) for d in directions]
     assert cells(np.zeros((1, 3))).tolist() == [-1]
 
 
 def test_cell_centres_and_areas_belong_to_the_cells() -> None:
+    generator = np.random.default_rng(8)
     centres = boundedness.cell_centres(kernel.SIDE)
     assert cells(centres).tolist() == list(range(kernel.CELLS))
     assert AREAS.sum() == pytest.approx(1, abs=1e-12)
-    directions = GENERATOR.normal(size=(200_000, 3))
+    directions = generator.normal(size=(200_000, 3))
     share = np.bincount(cells(directions), minlength=kernel.CELLS) / len(directions)
     # A binomial count of 500 has a deviation of 22, in 384 cells hardly beyond 4 of them.
     assert np.abs(share / AREAS - 1).max() < 0.22
@@ -39,16 +40,18 @@ def test_cell_centres_and_areas_belong_to_the_cells() -> None:
 
 def test_touching_cells_are_all_there() -> None:
     """Two directions 0.05 apart are in one cell or in two that touch."""
-    directions = GENERATOR.normal(size=(5000, 3))
+    generator = np.random.default_rng(8)
+    directions = generator.normal(size=(5000, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
-    aside = directions + 0.05 * GENERATOR.uniform(-1, 1, size=directions.shape) / np.sqrt(3)
+    aside = directions + 0.05 * generator.uniform(-1, 1, size=directions.shape) / np.sqrt(3)
     table = boundedness.touching_cells()
     assert all(b in table[a] for a, b in zip(cells(directions), cells(aside), strict=True))
 
 
 def test_coverage_counts_each_cell_once() -> None:
-    cloud = GENERATOR.normal(size=(60, 3))
-    places = np.concatenate([GENERATOR.normal(size=(20, 3)) * 0.5, cloud[:2]])
+    generator = np.random.default_rng(8)
+    cloud = generator.normal(size=(60, 3))
+    places = np.concatenate([generator.normal(size=(20, 3)) * 0.5, cloud[:2]])
     spacing = cKDTree(cloud).query(cloud, boundedness.DISC_NEIGHBOURS)[0].mean(axis=1)
     curve = morton_curve(cloud)
     seen = boundedness.coverage(places, curve, spacing[curve.order])
@@ -62,8 +65,9 @@ def test_coverage_counts_each_cell_once() -> None:
 
 
 def test_slabs_hold_what_is_near_their_planes() -> None:
-    cloud, centres = GENERATOR.normal(size=(500, 3)), GENERATOR.normal(size=(7, 3))
-    directions = GENERATOR.normal(size=(7, 3))
+    generator = np.random.default_rng(8)
+    cloud, centres = generator.normal(size=(500, 3)), generator.normal(size=(7, 3))
+    directions = generator.normal(size=(7, 3))
     found = slab_members(cloud, centres, directions, 0.3)
     for rows, centre, direction in zip(found, centres, directions, strict=True):
         assert rows.tolist() == np.flatnonzero(np.abs((cloud - centre) @ direction) <= 0.3).tolist()

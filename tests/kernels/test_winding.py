@@ -6,8 +6,6 @@ import pytest
 from reference.quality import winding_number
 from tiskel.geometry.oriented import SOFTENING, OrientedCloud
 
-GENERATOR = np.random.default_rng(5)
-
 
 def sphere(count: int) -> OrientedCloud:
     """A Fibonacci sphere: nearly equal areas, exact normals."""
@@ -23,9 +21,10 @@ def plain(surface: OrientedCloud, queries: np.ndarray) -> np.ndarray:
 
 
 def test_one_block_equals_the_plain_sum() -> None:
+    generator = np.random.default_rng(5)
     count = 20  # fewer than a block; queries within twice its radius, so that nothing is summed up
-    points = GENERATOR.normal(size=(count, 3))
-    surface = OrientedCloud(points, GENERATOR.normal(size=(count, 3)), GENERATOR.random(count))
+    points = generator.normal(size=(count, 3))
+    surface = OrientedCloud(points, generator.normal(size=(count, 3)), generator.random(count))
     queries = points[:5] + 0.1
     # twenty summands of order one in another order
     np.testing.assert_allclose(surface.winding_numbers(queries), plain(surface, queries), atol=1e-13)
@@ -34,8 +33,9 @@ def test_one_block_equals_the_plain_sum() -> None:
 def test_far_blocks_stand_for_their_points() -> None:
     """A dipole stands for a patch that is seen from two of its radii or more: an error of a few per cent of its own
     solid angle, which is a small part of the whole."""
+    generator = np.random.default_rng(5)
     surface = sphere(2000)
-    queries = GENERATOR.normal(size=(200, 3)) * 0.8
+    queries = generator.normal(size=(200, 3)) * 0.8
     difference = np.abs(surface.winding_numbers(queries) - plain(surface, queries))
     assert difference.max() < 0.02  # a fiftieth of the step from 0 to 1 that it has to show
     assert difference.max() > 0  # or no block was ever summed up

@@ -12,8 +12,6 @@ from tiskel.arrays import Points
 from tiskel.metrics.tables import COLUMNS, best_rows, row_of, to_csv
 from tiskel.pictures.quality import quality_picture
 
-GENERATOR = np.random.default_rng(9)
-
 
 def strict(quality: Quality) -> dict[str, Any]:
     """Return the document after a round trip through JSON that refuses NaN."""
@@ -134,7 +132,8 @@ def test_a_curve_at_one_place_has_no_direction() -> None:
 
 
 def test_ten_points_are_enough_and_nine_are_not() -> None:
-    cloud = GENERATOR.normal(size=(10, 3))
+    generator = np.random.default_rng(9)
+    cloud = generator.normal(size=(10, 3))
     q = strict(evaluate(cloud, cloud * 0.1, [[0.0, 0, 0], [0.1, 0, 0]], [[0, 1]]))
     assert q["counts"]["cloud"] == 10
     with pytest.raises(TiskelError, match="at least 10 distinct points"):

@@ -42,10 +42,12 @@ class Strip:
 
     @property
     def intervals(self) -> int:
+        """The number of even intervals between the knots."""
         return len(self.coefficients) - DEGREE
 
     @property
     def step(self) -> float:
+        """The length of an interval."""
         return self.stop / self.intervals
 
     @cached_property

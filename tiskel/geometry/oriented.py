@@ -48,10 +48,12 @@ class OrientedCloud:
 
     @property
     def spacing(self) -> float:
+        """The side of the square that a point stands for, in the median."""
         return float(np.sqrt(np.median(self.areas)))
 
     @property
     def trusted(self) -> bool:
+        """Whether enough probes lie between an inside and an outside."""
         return self.consistency >= TRUSTED
 
     @cached_property

@@ -6,16 +6,19 @@ from tiskel.errors import TiskelError
 
 
 def among(name: str, value: str, allowed: tuple[str, ...]) -> None:
+    """Raise TiskelError where a word is none of those allowed."""
     if value not in allowed:
         raise TiskelError(f"{name} must be one of {', '.join(allowed)}, got {value!r}")
 
 
 def at_least(name: str, value: int | None, least: int) -> None:
+    """Raise TiskelError where a number is given and too small."""
     if value is not None and value < least:
         raise TiskelError(f"{name} must be at least {least}, got {value}")
 
 
 def finite(name: str, values: tuple[float, ...] | None, count: int) -> None:
+    """Raise TiskelError where numbers are given and not so many, or not finite."""
     if values is not None and (len(values) != count or not all(map(isfinite, values))):
         raise TiskelError(f"{name} must be {count} finite numbers, got {values}")
 

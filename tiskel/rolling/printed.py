@@ -45,6 +45,7 @@ class PrintedModel:
 
     @staticmethod
     def of(surface: FittedSurface, params: RollParams, radius: float) -> "PrintedModel":
+        """Return the model of a surface, its normals those of neighbours among places on it."""
         rows = max(PER_SLICE * len(surface.sections), 2)
         v, u = np.meshgrid(np.linspace(0, V_STOP, rows), np.arange(AROUND) / AROUND * 2 * pi, indexing="ij")
         forms = forms_of(surface.jet(u, v), params.sigma)

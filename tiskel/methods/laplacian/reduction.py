@@ -38,6 +38,7 @@ class Merge:
     rings: Rings
 
     def kept(self) -> Indices:
+        """Return the rows (m,) of the points that are left."""
         return np.flatnonzero(self.merged_into < 0).astype(np.int32)
 
 
