@@ -11,6 +11,18 @@ Table = ti.types.ndarray(dtype=ti.i32, ndim=2)
 
 
 @ti.func
+def beside_cone(point, start, end, first: ti.f64, last: ti.f64):
+    """Return the share along the axis of the foot of the perpendicular, and how far out of the radius there."""
+    axis = end - start
+    offset = point - start
+    square = axis.norm_sqr()
+    share = 0.0
+    if square > 0.0:
+        share = ti.min(ti.max(offset.dot(axis) / square, 0.0), 1.0)
+    return share, (offset - share * axis).norm() - (1.0 - share) * first - share * last
+
+
+@ti.func
 def on_cone(point, start, end, first: ti.f64, last: ti.f64):
     """Return the share of the way along the axis where the foot is, and the signed distance to the surface.
 
@@ -44,6 +56,7 @@ def _cone_feet(
     radii: Numbers,  # (v,)
     edges: Table,  # (e, 2)
     signed: ti.i32,  # whether the least distance counts, or the least in size
+    radial: ti.i32,  # whether perpendicular to the axis, or to the surface
     # outputs
     edge: Indices,  # (p,) the edge that counts, -1 where the list is empty
     share: Numbers,  # (p,) of the way along it
@@ -58,6 +71,8 @@ def _cone_feet(
             if c >= 0:
                 a, b = edges[c, 0], edges[c, 1]
                 s, d = on_cone(points[rows[i]], nodes[a], nodes[b], radii[a], radii[b])
+                if radial == 1:
+                    s, d = beside_cone(points[rows[i]], nodes[a], nodes[b], radii[a], radii[b])
                 size = d
                 if signed == 0:
                     size = ti.abs(d)

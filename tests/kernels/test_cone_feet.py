@@ -32,6 +32,19 @@ def test_each_point_stands_on_the_nearest_surface_of_its_own_list() -> None:
     np.testing.assert_allclose(at.residual, RESIDUAL[every], atol=ROUNDING)
 
 
+def test_radial_feet_are_those_of_the_perpendiculars() -> None:
+    """And never nearer than the surface is."""
+    every = np.arange(9, dtype=np.int32)[None]
+    at = foot_points(CURVE, POINTS, ROWS, np.zeros(200, np.int32), every, radial=True)
+    start, stop = NODES[EDGES[at.edge]].transpose(1, 0, 2)
+    out = POINTS[ROWS] - at.places
+    inner = (at.share > 0) & (at.share < 1)
+    assert inner.sum() > 20
+    np.testing.assert_allclose(np.einsum("ij,ij->i", out, stop - start)[inner], 0, atol=1e-12)
+    np.testing.assert_allclose(at.residual, np.linalg.norm(out, axis=1) - at.radii, atol=ROUNDING)
+    assert (at.residual >= RESIDUAL[np.arange(200), at.edge] - ROUNDING).all()
+
+
 def test_a_point_inside_any_cone_is_inside_the_union() -> None:
     some = np.array([1, 3, 6], np.int32)
     found = foot_points(CURVE, POINTS, ROWS, np.zeros(200, np.int32), some[None], signed=True).residual
