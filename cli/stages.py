@@ -81,7 +81,7 @@ def tell_contraction(c: "Contraction") -> None:
         f"({len(c.points) / len(c.cloud):.1%}); {c.status.value}: {c.status.advice}"
     )
     if console.session.verbose:
-        console.errors.print(_steps_table(c))
+        console.errors().print(_steps_table(c))
         console.say(f"neighbours and rings: {c.ring_seconds:.3f} s")
 
 

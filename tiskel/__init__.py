@@ -10,7 +10,7 @@ Everything public is named here; modules load on first use, so that importing
 the package costs nothing.
 """
 
-from importlib import import_module, metadata
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -112,6 +112,8 @@ __all__ = sorted(_HOME)  # noqa: PLE0605
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
+        from importlib import metadata
+
         return metadata.version("tiskel")
     if name not in _HOME:
         raise AttributeError(f"module 'tiskel' has no attribute {name!r}")

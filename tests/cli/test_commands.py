@@ -9,6 +9,7 @@ from plyfile import PlyData, PlyElement
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import LbcParams, load_cloud, read_contraction, read_skeleton
+from tiskel.cli.commands import COMMANDS
 from tiskel.gallery.catalogue import SHAPES
 
 
@@ -221,8 +222,12 @@ def test_log_and_version_and_help(tiskel: Runner, cloud: Path, tmp_path: Path) -
     tiskel("contract", cloud.name, "--log", "a.log", "--quiet")
     assert "contracted 900 points" in (tmp_path / "a.log").read_text()
     assert tiskel("--version").stdout.startswith(b"tiskel 0.")
-    for command in ("contract", "skeleton", "run", "shape", "convert", "info", "doctor"):
-        assert b"Usage: tiskel" in tiskel(command, "-h").stdout
+    overview = " ".join(tiskel("-h").stdout.decode().split())
+    for name, entry in COMMANDS.items():
+        assert f"{name} {entry.summary}" in overview
+        help_text = " ".join(tiskel(name, "-h", TERM="dumb").stdout.decode().split())
+        assert f"Usage: tiskel {name} " in help_text
+        assert entry.summary in help_text
 
 
 def test_verbose_shows_the_traceback(tiskel: Runner) -> None:
