@@ -6,6 +6,7 @@ marked [T] are those of the published MATLAB toolboxes, which produced the
 published tables.
 """
 
+from tiskel.params.conditioning import ConditioningParams, NoiseKind
 from tiskel.params.methods import (
     MIN_POINTS,
     SIDE,
@@ -24,6 +25,7 @@ from tiskel.params.methods import (
 )
 from tiskel.params.metrics import Bars, MetricParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
+from tiskel.params.shape import ShapeParams
 from tiskel.params.skeleton import SkeletonParams
 from tiskel.params.stability import StabilityParams
 from tiskel.params.surface import OrderRule, SurfaceParams
@@ -32,6 +34,7 @@ __all__ = [
     "MIN_POINTS",
     "SIDE",
     "Bars",
+    "ConditioningParams",
     "ContractionParams",
     "GlsParams",
     "LaplacianParams",
@@ -39,11 +42,13 @@ __all__ = [
     "Method",
     "MetricParams",
     "Model",
+    "NoiseKind",
     "Normalisation",
     "Normals",
     "OrderRule",
     "RobustParams",
     "RollParams",
+    "ShapeParams",
     "Side",
     "SkeletonParams",
     "Solver",
