@@ -41,12 +41,15 @@ if TYPE_CHECKING:
     from tiskel.params import GlsParams as GlsParams
     from tiskel.params import LbcParams as LbcParams
     from tiskel.params import MetricParams as MetricParams
+    from tiskel.params import PipelineParams as PipelineParams
     from tiskel.params import RobustParams as RobustParams
     from tiskel.params import RollParams as RollParams
     from tiskel.params import ShapeParams as ShapeParams
     from tiskel.params import SkeletonParams as SkeletonParams
     from tiskel.params import StabilityParams as StabilityParams
     from tiskel.params import SurfaceParams as SurfaceParams
+    from tiskel.pipeline import PipelineResult as PipelineResult
+    from tiskel.pipeline import run_pipeline as run_pipeline
     from tiskel.preprocess.conditioning import condition as condition
     from tiskel.rolling.bodies import BodyTrajectory as BodyTrajectory
     from tiskel.rolling.bodies import roll_body as roll_body
@@ -73,6 +76,8 @@ _HOME = {
     "Inputs": "rolling.inputs",
     "LbcParams": "params",
     "MetricParams": "params",
+    "PipelineParams": "params",
+    "PipelineResult": "pipeline",
     "Quality": "metrics.result",
     "RobustParams": "params",
     "RollParams": "params",
@@ -102,6 +107,7 @@ _HOME = {
     "read_surfaces": "io.stages.surface",
     "roll": "rolling.roll",
     "roll_body": "rolling.bodies",
+    "run_pipeline": "pipeline",
     "shape_graph": "gallery.make",
     "write_contraction": "io.stages.contraction",
     "write_skeleton": "io.stages.skeleton",

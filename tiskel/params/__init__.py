@@ -24,11 +24,12 @@ from tiskel.params.methods import (
     settings_of,
 )
 from tiskel.params.metrics import Bars, MetricParams
+from tiskel.params.pipeline import PipelineParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
 from tiskel.params.shape import ShapeParams
 from tiskel.params.skeleton import SkeletonParams
 from tiskel.params.stability import StabilityParams
-from tiskel.params.surface import OrderRule, SurfaceParams
+from tiskel.params.surface import FrameRule, OrderRule, SurfaceParams
 
 __all__ = [
     "MIN_POINTS",
@@ -36,6 +37,7 @@ __all__ = [
     "Bars",
     "ConditioningParams",
     "ContractionParams",
+    "FrameRule",
     "GlsParams",
     "LaplacianParams",
     "LbcParams",
@@ -46,6 +48,7 @@ __all__ = [
     "Normalisation",
     "Normals",
     "OrderRule",
+    "PipelineParams",
     "RobustParams",
     "RollParams",
     "ShapeParams",
