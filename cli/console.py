@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tiskel.errors import TiskelError
+from tiskel.messages import Messages
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -70,6 +71,15 @@ def warn(messages: tuple[str, ...]) -> None:
         log.warning(message)
         if not session.quiet:
             errors().print(f"warning: {message}", markup=False)
+
+
+def tell(messages: Messages) -> None:
+    """Say what the stages have to say, warnings as warnings."""
+    for message in messages:
+        if message.warning:
+            warn((message.text,))
+        else:
+            say(message.text)
 
 
 def table(title: str, columns: list[str], rows: list[list[str]]) -> "Table":
