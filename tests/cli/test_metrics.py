@@ -21,7 +21,7 @@ def made() -> dict[str, bytes]:
     files = {"y.ply": dump_cloud(points, "y.ply")}
     for method in ("gls", "lbc"):
         contraction = contract(points, ContractionParams(method=method))
-        files[f"{method}.c.ply"] = dump_contraction(contraction)
+        files[f"{method}.c.ply"] = dump_contraction(contraction, history=True)
         files[f"{method}.ply"] = dump_skeleton(extract_skeleton(contraction))
     return files
 
