@@ -1,13 +1,15 @@
 """Skeletons against the truth: every shape, clean and degraded, random graphs of round cones, and scans.
 
     python benchmarks/quality.py [SETTING...]     # names as in SETTINGS; all of them without
+    python benchmarks/quality.py clean --methods robust --out before     # a part of it, to compare two commits
 
-Writes benchmarks/quality/table.csv and table.md: for every method and setting how often components and loops are right,
-the share of true ends found and of found ends that are spurious, distances to the truth and back in local radii, the
-qualities of the curve, and time. Two settings run side by side, one thread each. The seeds of the random graphs come
-from the hash of the commit that is scored, so that nobody can have tuned to them.
+Writes table.csv and table.md into benchmarks/quality, or the folder of --out: for every method and setting how often
+components and loops are right, the share of true ends found and of found ends that are spurious, distances to the
+truth and back in local radii, the qualities of the curve, and time. Two settings run side by side, one thread each.
+The seeds of the random graphs come from the hash of the commit that is scored, so that nobody can have tuned to them.
 """
 
+import argparse
 import json
 import os
 import platform
@@ -43,8 +45,8 @@ from tiskel.metrics.truth import agreement
 HERE = Path(__file__).parent
 OUT = HERE / "quality"
 REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", HERE / ".." / ".." / "shared" / "reference")) / "clouds"
-METHODS = ("lbc", "gls", "robust")
 TRUTH = "truth"  # the analytic skeleton, under the same measures: what they can be at best
+METHODS = ("lbc", "gls", "robust", TRUTH)
 SCORED = "TISKEL_SCORED_COMMIT"
 RANDOM, RANDOM_COUNT = "random graphs", 100
 BODIES, SCANS = "no curve skeleton", "scans and models"
@@ -137,26 +139,27 @@ def scored(name: str, cloud: np.ndarray, shape: ConeGraph | None, setting: str, 
     return row | {"seconds": round(seconds, 2), "warnings": "; ".join(s.warnings)}
 
 
-def rows_of(setting: str) -> list[Row]:
-    """Score all of a setting with all methods."""
+def rows_of(setting: str, methods: list[str]) -> list[Row]:
+    """Score all of a setting with all of some methods."""
     given: Iterator[tuple[str, np.ndarray, ConeGraph | None]]
     if setting in (BODIES, SCANS):
         given = ((name, cloud, None) for name, cloud in clouds(setting))
     else:
         given = ((name, make_shape(shape, params)[0], shape) for name, shape, params in subjects(setting))
     warm = make_shape(shape_graph("capsule"), ShapeParams(count=500))[0]
-    for method in METHODS:  # kernels compile once
-        scored("capsule", warm, None, setting, method)
+    for method in methods:  # kernels compile once
+        scored("capsule", warm, shape_graph("capsule"), setting, method)
     return [
         scored(name, cloud, shape, setting, method)
         for name, cloud, shape in given
-        for method in (METHODS if shape is None else (*METHODS, TRUTH))
+        for method in methods
+        if shape is not None or method != TRUTH
     ]
 
 
-def in_process(setting: str) -> list[Row]:
+def in_process(setting: str, methods: list[str]) -> list[Row]:
     """Score a setting in a process of its own."""
-    words = [sys.executable, __file__, "--rows", setting]
+    words = [sys.executable, __file__, "--rows", setting, "--methods", *methods]
     done = subprocess.run(
         words, env={**os.environ, "TISKEL_NUM_THREADS": "1"}, capture_output=True, text=True, check=False
     )
@@ -207,11 +210,12 @@ def totals(rows: list[Row], method: str) -> str:
     return f"{method} {sum(row['right'] for row in chosen)} of {len(chosen)}, ends {found / max(true, 1):.0%}"
 
 
-def page(rows: list[Row], settings: list[str]) -> str:
+def page(rows: list[Row], settings: list[str], every: list[str]) -> str:
+    methods = [method for method in every if method != TRUTH]
     packages = ", ".join(f"{package} {metadata.version(package)}" for package in PACKAGES)
     with_truth = [setting for setting in settings if setting not in (BODIES, SCANS)]
-    lines = [summary(rows, setting, method) for setting in with_truth for method in (*METHODS, TRUTH)]
-    wrong = [f"- {setting}, {method}: {missed(rows, setting, method)}" for setting in with_truth for method in METHODS]
+    lines = [summary(rows, setting, method) for setting in with_truth for method in every]
+    wrong = [f"- {setting}, {method}: {missed(rows, setting, method)}" for setting in with_truth for method in methods]
     others = [counted(row) for row in rows if row["setting"] in (BODIES, SCANS)]
     return (
         "# Skeletons against the truth\n\n"
@@ -223,7 +227,7 @@ def page(rows: list[Row], settings: list[str]) -> str:
         f"The targets are those of the clean and the degraded settings; {', '.join(HARSHER)} are reported only.\n\n"
         f"{HEAD}\n" + "\n".join(lines) + "\n\n"
         f"Components and loops right on the degraded clouds ({', '.join(DEGRADED)}) together: "
-        + "; ".join(totals(rows, method) for method in METHODS)
+        + "; ".join(totals(rows, method) for method in methods)
         + ".\n\n## Wrong components or loops\n\n" + "\n".join(wrong) + "\n"
         + "\n## Without a known skeleton\n\n| " + " | ".join(COUNTED) + " |\n|" + "---|" * len(COUNTED) + "\n"
         + "\n".join(others) + "\n"
@@ -240,19 +244,24 @@ def missed(rows: list[Row], setting: str, method: str) -> str:
 
 
 def main() -> None:
-    words = sys.argv[1:]
-    if words[:1] == ["--rows"]:
-        for row in rows_of(words[1]):
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("settings", nargs="*", metavar="SETTING", choices=[[], *EVERY])
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of the tables")
+    parser.add_argument("--rows", metavar="SETTING", help="print the rows of one setting as lines of JSON")
+    options = parser.parse_args()
+    if options.rows:
+        for row in rows_of(options.rows, options.methods):
             print(json.dumps(row), flush=True)
         return
-    settings = [s for s in words or EVERY if s != SCANS or REFERENCE.is_dir()]
+    settings = [s for s in options.settings or EVERY if s != SCANS or REFERENCE.is_dir()]
     commit()
     with ThreadPoolExecutor(2) as pool:
-        rows = [row for found in pool.map(in_process, settings) for row in found]
-    OUT.mkdir(exist_ok=True)
+        rows = [row for found in pool.map(in_process, settings, [options.methods] * len(settings)) for row in found]
+    options.out.mkdir(exist_ok=True, parents=True)
     keys = dict.fromkeys(key for row in rows for key in row)
-    (OUT / "table.csv").write_bytes(to_csv([{key: row.get(key) for key in keys} for row in rows]))
-    (OUT / "table.md").write_text(page(rows, settings))
+    (options.out / "table.csv").write_bytes(to_csv([{key: row.get(key) for key in keys} for row in rows]))
+    (options.out / "table.md").write_text(page(rows, settings, options.methods))
 
 
 if __name__ == "__main__":

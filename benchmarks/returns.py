@@ -4,14 +4,14 @@
     python benchmarks/returns.py --route     # and the way itself
 
 How it is counted. While a skeleton is extracted every call of a function of this
-package that is given the cloud is recorded (sys.setprofile), with the place it
-is called from: an argument with a row for every point, or an object that holds
-one. As a reader follows code and not a run, a place counts once, however often a
-loop passes it, and of a function called again only the call counts, not once
-more what it does inside. Calls one after the other in one file are one stay;
-every stay in a file that was left before is a return. Properties, lambdas and
-generated methods are no calls, nor are those of kernels, which start and end in
-one place.
+package that is given the cloud is recorded (sys.setprofile), with the place it is
+called from: an argument, or a variable of the function around it, with a row for
+every point, or an object that holds one. As a reader follows code and not a run, a
+place counts once, however often a loop passes it, and of a function called again
+only the call counts, not once more what it does inside. Calls one after the other
+in one file are one stay; every stay in a file that was left before is a return.
+Properties, lambdas and special methods are no calls, nor are those of kernels,
+which start and end in one place.
 """
 
 import argparse
@@ -30,7 +30,7 @@ METHODS = ("robust", "lbc", "gls")
 DEEP = 3  # objects within objects that are looked into for the cloud
 COUNT = 2039  # points, and nothing else has as many rows
 # A hand with holes, seen unevenly: limbs that are missed and grow, gaps that are bridged, doubt and further fronts.
-CLOUD = ShapeParams(count=COUNT, noise=0.1, missing=0.0, seed=3)
+CLOUD = ShapeParams(count=COUNT, noise=0.25, missing=0.3, seed=1)
 
 
 def holds_cloud(thing: object, deep: int = DEEP) -> bool:
@@ -86,10 +86,10 @@ class Route:
 
     def _is_stop(self, frame: FrameType) -> bool:
         code = frame.f_code
-        if code.co_name.startswith("<") or code in self.skipped or f"{ROOT}/" not in code.co_filename:
+        if code.co_name.startswith(("<", "__")) or code in self.skipped or f"{ROOT}/" not in code.co_filename:
             return False
-        arguments = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
-        return any(holds_cloud(frame.f_locals.get(name)) for name in arguments)
+        given = (*code.co_varnames[: code.co_argcount + code.co_kwonlyargcount], *code.co_freevars)
+        return any(holds_cloud(frame.f_locals.get(name)) for name in given)
 
     def stays(self) -> list[tuple[str, list[str]]]:
         """Return the files in the order of the way, each with the functions entered in a row."""

@@ -2,6 +2,9 @@
 
 import os
 
+from .folders import name_cache_home
+
 # Taichi reads these while it is imported: no banner on stdout, no look-up of newer versions.
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 os.environ.setdefault("TI_SKIP_VERSION_CHECK", "ON")
+name_cache_home()

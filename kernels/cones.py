@@ -12,14 +12,26 @@ Table = ti.types.ndarray(dtype=ti.i32, ndim=2)
 
 @ti.func
 def on_cone(point, start, end, first: ti.f64, last: ti.f64):
-    """Return the share of the way along the axis where the foot is, and the distance to the surface there."""
-    along = end - start
+    """Return the share of the way along the axis where the foot is, and the signed distance to the surface.
+
+    The cone is the union of the balls along its axis, so that the distance is the
+    least of |p - c(s)| - r(s). That is convex in s; it is least where the slanted
+    normal of the side through the point meets the axis, or at an end.
+    """
+    axis = end - start
     offset = point - start
-    square = along.norm_sqr()
+    square = axis.norm_sqr()
+    taper = first - last
     share = 0.0
-    if square > 0.0:
-        share = ti.min(ti.max(offset.dot(along) / square, 0.0), 1.0)
-    return share, (offset - share * along).norm() - (1.0 - share) * first - share * last
+    if square > taper * taper:
+        length = ti.sqrt(square)
+        along = offset.dot(axis) / length
+        across = ti.sqrt(ti.max(offset.norm_sqr() - along * along, 0.0))
+        foot = along - across * taper / ti.sqrt(square - taper * taper)
+        share = ti.min(ti.max(foot / length, 0.0), 1.0)
+    elif last > first:  # the ball at the end holds all others
+        share = 1.0
+    return share, (offset - share * axis).norm() - (1.0 - share) * first - share * last
 
 
 @ti.kernel

@@ -27,7 +27,12 @@ def _stage_function(
     guard: ti.f64,  # stands in for eta s_i(0) where that is not positive
     out: Numbers,
 ):
-    """F = V1 - V2 + 3 U (CONTRACTION.md, section 3)."""
+    """The stage function F = V1 - V2 + 3 U of Wen et al. 2024 (GLSkeleton), which says where points may merge.
+
+    V1 is what contraction still pulls at a point, V2 what attraction holds
+    against it, and U how much its Laplacian coordinate differs from the mean
+    of its ring.
+    """
     for i in points:
         remainder = sizes[i] - shrinkage * first_sizes[i]
         if remainder <= 0.0:

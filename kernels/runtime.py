@@ -1,111 +1,120 @@
 """Start Taichi once, silently, and only when a kernel is about to run.
 
-Three things about Taichi 1.7 shape this file: it prints to stdout while it
-starts, which would corrupt a pipe; its defaults are single precision and fast
-maths, which would change results; and it neither survives a fork nor starts
-outside the main thread.
+Four things about Taichi 1.7 shape this file. It prints to stdout while it
+starts, which would corrupt a pipe. Its defaults are single precision and fast
+maths, which would change results. It does not survive a fork. And it serves
+one thread at a time: the thread that starts it must also lay out its (empty)
+tree of fields, after which any thread may call kernels, those not yet compiled
+included, but never two at once. So a start is always complete, and one lock
+holds start and kernels together. Threads wait for each other's kernels, which
+use all cores anyway; the lock costs a call less than a microsecond, where a
+thread of its own for Taichi would cost a hundred.
 """
 
-import atexit
 import contextlib
 import functools
-import io
 import os
-import shutil
-import tempfile
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
 import taichi as ti
+from taichi.lang import impl, misc
+
+from .errors import TiskelError
+from .folders import make_cache_folder
 
 THREADS_VARIABLE = "TISKEL_NUM_THREADS"
-CACHE_VARIABLE = "TI_OFFLINE_CACHE_FILE_PATH"
+MOST_THREADS = 1024  # Taichi starts as many as it is told, until the system refuses and it aborts
 
+_lock = threading.RLock()
 _started_in: list[int] = []
 _F = TypeVar("_F", bound=Callable[..., Any])
+
+if hasattr(os, "register_at_fork"):  # a child must not inherit the lock of a thread that it does not inherit
+    os.register_at_fork(before=_lock.acquire, after_in_parent=_lock.release, after_in_child=_lock.release)
 
 
 def available_threads() -> int:
     """Return the threads that the affinity mask and the cgroup quota allow, at least one."""
     affinity = getattr(os, "sched_getaffinity", None)
     count = len(affinity(0)) if affinity else os.cpu_count() or 1
-    return max(1, min(count, _cgroup_quota() or count))
+    return max(1, min(count, _cgroup_quota() or count, MOST_THREADS))
 
 
 def requested_threads() -> int:
-    """Return TISKEL_NUM_THREADS, or what the machine allows where it is unset."""
+    """Return TISKEL_NUM_THREADS, or what the machine allows where it is unset.
+
+    Raises
+    ------
+    TiskelError
+        Where the variable is no whole number from 1 to 1024.
+    """
     value = os.environ.get(THREADS_VARIABLE)
     if value is None:
         return available_threads()
-    if not value.isdigit() or int(value) < 1:
-        raise ValueError(f"{THREADS_VARIABLE} must be a positive whole number, got {value!r}; unset or correct it")
+    if not (value.isascii() and value.isdigit() and 1 <= int(value) <= MOST_THREADS):
+        raise TiskelError(
+            f"{THREADS_VARIABLE} must be a whole number from 1 to {MOST_THREADS}, got {value!r}; correct or unset it"
+        )
     return int(value)
 
 
 def ensure() -> None:
-    """Start Taichi on the CPU in double precision, or do nothing where it runs already.
+    """Start Taichi on the CPU in double precision, or do nothing where it runs already; from any thread.
 
-    Raises RuntimeError in a forked child or outside the main thread, where Taichi would hang or abort.
+    Raises
+    ------
+    TiskelError
+        In a process forked after the start, where Taichi would hang, and where TISKEL_NUM_THREADS is wrong.
     """
-    if _started_in:
-        if _started_in[0] != os.getpid():
-            raise RuntimeError("Taichi does not survive a fork; start workers with the 'spawn' or 'forkserver' method")
-        return
-    if threading.current_thread() is not threading.main_thread():
-        raise RuntimeError("the first tiskel kernel must run in the main thread; call tiskel once there first")
-    with contextlib.redirect_stdout(io.StringIO()):
+    with _lock:
+        if not _started_in:
+            _start()
+        elif _started_in[0] != os.getpid():
+            raise TiskelError(
+                "kernels do not survive a fork, and this process was forked after the first of them ran; "
+                "start workers with multiprocessing.get_context('spawn') or 'forkserver'"
+            )
+
+
+def started(kernel: _F) -> _F:
+    """Wrap a kernel so that calling it starts Taichi first, and waits for kernels of other threads."""
+
+    @functools.wraps(kernel)
+    def call(*arguments: Any) -> Any:
+        with _lock:
+            ensure()
+            return kernel(*arguments)
+
+    return call  # type: ignore[return-value]
+
+
+def _start() -> None:
+    threads = requested_threads()
+    make_cache_folder()
+    with _without_print():
         ti.init(
             arch=ti.cpu,
             default_fp=ti.f64,
             default_ip=ti.i32,
             fast_math=False,
-            cpu_max_num_threads=requested_threads(),
+            cpu_max_num_threads=threads,
             log_level="error",
-            **_cache_options(),
         )
+    impl.get_runtime().materialize()  # only this thread can, and its kernel may fail before it would
     _started_in.append(os.getpid())
 
 
-def started(kernel: _F) -> _F:
-    """Wrap a kernel so that calling it starts Taichi first."""
-
-    @functools.wraps(kernel)
-    def call(*arguments: Any) -> Any:
-        ensure()
-        return kernel(*arguments)
-
-    return call  # type: ignore[return-value]
-
-
-def cache_folder() -> Path:
-    """Return the folder of compiled kernels: TI_OFFLINE_CACHE_FILE_PATH, or Taichi's own under the cache home."""
-    given = os.environ.get(CACHE_VARIABLE)
-    return Path(given) if given else _taichi_home() / "ticache"
-
-
-def _taichi_home() -> Path:
-    """Return the folder that Taichi makes for itself while it starts, whatever the location of its cache."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "taichi"
-
-
-def _cache_options() -> dict[str, Any]:
-    """Keep Taichi from crashing where its folder cannot be made, and from complaining where its cache cannot."""
-    if not _writable(_taichi_home()):
-        instead = tempfile.mkdtemp(prefix="tiskel-")
-        atexit.register(shutil.rmtree, instead, ignore_errors=True)
-        os.environ["XDG_CACHE_HOME"] = instead
-    return {} if _writable(cache_folder()) else {"offline_cache": False}
-
-
-def _writable(folder: Path) -> bool:
+@contextlib.contextmanager
+def _without_print() -> Iterator[None]:
+    """Silence the module that starts Taichi; to redirect stdout would silence the other threads as well."""
+    misc.print = lambda *_, **__: None
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
+        yield
+    finally:
+        del misc.print
 
 
 def _cgroup_quota() -> int | None:

@@ -17,3 +17,8 @@ MODULES = [
 @pytest.mark.parametrize("name", ["tiskel", *MODULES])
 def test_examples_are_true(name: str) -> None:
     assert doctest.testmod(importlib.import_module(name)).failed == 0
+
+
+@pytest.mark.parametrize("name", tiskel.__all__)
+def test_every_public_name_shows_how(name: str) -> None:
+    assert ">>> " in (getattr(tiskel, name).__doc__ or "")

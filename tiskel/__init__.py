@@ -118,9 +118,9 @@ __all__ = sorted(_HOME)  # noqa: PLE0605
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        from importlib import metadata
+        from tiskel.version import version
 
-        return metadata.version("tiskel")
+        return version()
     if name not in _HOME:
         raise AttributeError(f"module 'tiskel' has no attribute {name!r}")
     return getattr(import_module(f"tiskel.{_HOME[name]}"), name)

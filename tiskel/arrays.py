@@ -17,7 +17,13 @@ FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or 
 
 
 def as_points(points: npt.ArrayLike) -> Points:
-    """Return the points as a C-contiguous float64 array of shape (n, 3)."""
+    """Return the points as a C-contiguous float64 array of shape (n, 3).
+
+    Raises
+    ------
+    TiskelError
+        Where they are no numbers or have another shape.
+    """
     try:
         array = np.ascontiguousarray(points, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -29,25 +35,48 @@ def as_points(points: npt.ArrayLike) -> Points:
 
 
 def finite_rows(points: Points) -> Mask:
-    """Return which rows hold three finite numbers."""
+    """Return (n,) bool, which of points (n, 3) have three finite numbers."""
     return np.asarray(np.isfinite(points).all(axis=1))
 
 
 def first_of_duplicates(points: Points) -> Indices:
-    """Return for each row the first row at exactly the same place (itself where it is alone)."""
+    """Return (n,) int32, for each of points (n, 3) the first row at exactly the same place; itself where alone."""
     _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
     return first[inverse.ravel()].astype(np.int32)
 
 
 def resolved(into: Indices) -> Indices:
-    """Return for each row the one at the end of its chain of replacements; a row that stays names itself."""
+    """Return for each row the one at the end of its chain of replacements.
+
+    Parameters
+    ----------
+    into : (n,) int32
+        The row that takes the place of each; a row that stays names itself. Chains must not go round in circles.
+
+    Returns
+    -------
+    (n,) int32
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.arrays import resolved
+    >>> resolved(np.array([0, 0, 1, 3], np.int32)).tolist()
+    [0, 0, 0, 3]
+    """
     while not np.array_equal(into, into[into]):
         into = into[into]
     return into
 
 
 def check_solid(points: Points) -> None:
-    """Raise where distinct points are too few, or lie on a line or a plane: there is no body to contract."""
+    """Check that distinct points (n, 3) surround a body.
+
+    Raises
+    ------
+    TiskelError
+        Where they are fewer than ten, or lie on a line or a plane: there is no body to contract.
+    """
     if len(points) < MIN_POINTS:
         raise TiskelError(f"a cloud needs at least {MIN_POINTS} distinct points, got {len(points)}; use a denser scan")
     singular = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
@@ -58,22 +87,51 @@ def check_solid(points: Points) -> None:
 
 @dataclass(frozen=True)
 class Frame:
-    """A shift and a scale to normalised coordinates: (points - centre) * scale."""
+    """A shift and a scale to normalised coordinates: (points - centre) * scale.
+
+    Attributes
+    ----------
+    centre : (3,) float64
+        The middle of the bounding box, in the input's unit.
+    scale : float
+        Normalised lengths per unit of the input.
+    """
 
     centre: Numbers
     scale: float
 
     def apply(self, points: Points) -> Points:
+        """Return points (n, 3) of the input in normalised coordinates."""
         return np.ascontiguousarray((points - self.centre) * self.scale)
 
     def undo(self, points: Points) -> Points:
+        """Return normalised points (n, 3) in the units of the input."""
         return points / self.scale + self.centre
 
 
 def normalisation(points: Points, kind: Normalisation = "side") -> Frame:
-    """Return the map that centres the bounding box and scales its longest side (or diagonal) to 1.6.
+    """Return the map that centres the bounding box and scales it to a length of 1.6.
 
     The GLSkeleton paper says the diagonal; its toolbox, which made the tables, takes the longest side.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Points of a cloud, in any unit.
+    kind : "side" or "diagonal"
+        What is scaled to 1.6: the longest side of the bounding box, or its diagonal.
+
+    Returns
+    -------
+    Frame
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.arrays import normalisation
+    >>> frame = normalisation(np.array([[0, 0, 0], [4.0, 2, 2]]))
+    >>> frame.centre.tolist(), frame.scale
+    ([2.0, 1.0, 1.0], 0.4)
     """
     low, high = points.min(axis=0), points.max(axis=0)
     length = (high - low).max() if kind == "side" else np.linalg.norm(high - low)
@@ -81,5 +139,5 @@ def normalisation(points: Points, kind: Normalisation = "side") -> Frame:
 
 
 def diagonal(points: Points) -> float:
-    """Return the length of the bounding box's diagonal."""
+    """Return the length of the bounding box's diagonal of points (n, 3), in their unit."""
     return float(np.linalg.norm(np.ptp(points, axis=0)))

@@ -93,9 +93,10 @@ class Contraction:
         """Return (n,), for each point of the cloud the place in ``points`` of the one it ended up in."""
         return survivors(self.rows, self.merged_into)
 
-    def as_trace(self, frame: Frame) -> Trace:
-        """Return what the method's curve needs, in normalised coordinates; the history is left out."""
-        return Trace(
+    def as_trace(self) -> tuple[Trace, Frame]:
+        """Return what the method's curve needs, in normalised coordinates, without the history, and the way back."""
+        frame = normalisation(self.cloud, self.params.normalise)
+        trace = Trace(
             cloud=frame.apply(self.cloud),
             points=frame.apply(self.points),
             rows=self.rows,
@@ -108,6 +109,7 @@ class Contraction:
             sections=self.sections,
             prepared=self.prepared,
         )
+        return trace, frame
 
 
 def contract(

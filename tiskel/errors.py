@@ -1,5 +1,5 @@
 """The one exception that callers need to know."""
 
+from tiskel.kernels.errors import TiskelError
 
-class TiskelError(Exception):
-    """The input or the run failed; the message says what, which value, and what to do."""
+__all__ = ["TiskelError"]

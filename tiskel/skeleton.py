@@ -8,7 +8,7 @@ import numpy as np
 if TYPE_CHECKING:
     import networkx
 
-from tiskel.arrays import Indices, Numbers, Points, normalisation
+from tiskel.arrays import Indices, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
@@ -122,8 +122,8 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
     if len(c.points) == 0:
         raise TiskelError("the contraction holds no point; run tiskel contract again")
     settings = (params or SkeletonParams()).over(c.params)
-    frame = normalisation(c.cloud, settings.normalise)
-    made = METHODS[settings.method].curve(c.as_trace(frame), settings)
+    trace, frame = c.as_trace()
+    made = METHODS[settings.method].curve(trace, settings)
     return Skeleton(
         nodes=frame.undo(made.graph.nodes),
         edges=made.graph.edges,

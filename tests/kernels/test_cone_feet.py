@@ -17,6 +17,7 @@ CURVE = ConeCurve(
 ROWS = GENERATOR.permutation(300)[:200].astype(np.int32)
 SHARE, RESIDUAL = cone_residuals(POINTS[ROWS], NODES, CURVE.radii, EDGES)
 ROUNDING = 1e-14  # lengths of up to ten, some sums in another order
+FLAT = 1e-6  # the distance is flat where it is least: its rounding hides the root of it in the share
 
 
 def test_each_point_stands_on_the_nearest_surface_of_its_own_list() -> None:
@@ -27,7 +28,7 @@ def test_each_point_stands_on_the_nearest_surface_of_its_own_list() -> None:
         mine = row[row >= 0]
         assert at.edge[i] == mine[np.abs(RESIDUAL[i, mine]).argmin()]
     every = np.arange(200), at.edge
-    np.testing.assert_allclose(at.share, SHARE[every], atol=ROUNDING)
+    np.testing.assert_allclose(at.share, SHARE[every], atol=FLAT)
     np.testing.assert_allclose(at.residual, RESIDUAL[every], atol=ROUNDING)
 
 

@@ -67,9 +67,9 @@ def rod(count: int = 900, missing: float = 0.0) -> tuple[Points, ConeCurve, Sect
     return points, *chain(crooked, np.full(7, 0.15), nearest_node(points, guess))
 
 
-def test_residuals_are_signed_distances_of_even_cones() -> None:
+def test_residuals_are_signed_distances_whatever_the_taper() -> None:
     generator = np.random.default_rng(0)
-    shape = ConeGraph(generator.normal(size=(3, 3)), np.array([[0, 1], [1, 2]], np.int32), np.full(3, 0.3))
+    shape = ConeGraph(generator.normal(size=(3, 3)), np.array([[0, 1], [1, 2]], np.int32), np.array([0.5, 0.1, 0.3]))
     points = generator.normal(size=(200, 3))
     share, residual = cone_residuals(points, shape.nodes, shape.radii, shape.edges)
     for edge in range(2):

@@ -4,18 +4,33 @@ import numpy as np
 
 from tiskel.arrays import Indices, Numbers, Points
 
+ROUNDS = 120  # of ternary search, each leaves two thirds
+
 
 def cone_residuals(
     points: Points, nodes: Points, radii: Numbers, edges: Indices
 ) -> tuple[Numbers, Numbers]:  # fmt: skip
-    """Return (p, e) the share along each edge where a point's foot is, and the distance to the surface there."""
+    """Return (p, e) the share along each edge of a point's foot, and its signed distance to the cone's surface.
+
+    A round cone is the union of the balls along its axis, so the distance is the
+    least of those to the balls: a convex function of the share, whose least value
+    ternary search finds.
+    """
     share, distance = np.zeros((2, len(points), len(edges)))
     for j, (first, last) in enumerate(edges):
-        along = nodes[last] - nodes[first]
-        square = along @ along
-        for i, point in enumerate(points):
-            s = min(max((point - nodes[first]) @ along / square, 0.0), 1.0) if square > 0 else 0.0
-            foot = nodes[first] + s * along
-            share[i, j] = s
-            distance[i, j] = np.linalg.norm(point - foot) - (1 - s) * radii[first] - s * radii[last]
+
+        def to_ball(s: Numbers, a: int = first, b: int = last) -> Numbers:
+            centres = nodes[a] + s[:, None] * (nodes[b] - nodes[a])
+            return np.asarray(np.linalg.norm(points - centres, axis=1) - (1 - s) * radii[a] - s * radii[b])
+
+        low, high = np.zeros(len(points)), np.ones(len(points))
+        for _ in range(ROUNDS):
+            one, other = low + (high - low) / 3, high - (high - low) / 3
+            left = to_ball(one) <= to_ball(other)
+            low, high = np.where(left, low, one), np.where(left, other, high)
+        candidates = np.stack([np.zeros(len(points)), low, np.ones(len(points))])
+        values = np.stack([to_ball(s) for s in candidates])
+        best = values.argmin(axis=0)
+        share[:, j] = candidates[best, np.arange(len(points))]
+        distance[:, j] = values[best, np.arange(len(points))]
     return share, distance

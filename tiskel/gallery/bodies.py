@@ -1,4 +1,4 @@
-"""More shapes: bodies with limbs, furniture, and what is knotted or linked."""
+"""More shapes: bodies with branches, furniture, and what is knotted or linked."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ def dog() -> ConeGraph:
 
 
 def starfish() -> ConeGraph:
-    """A thick middle with six limbs, two of them up and down."""
+    """A thick middle with six branches, two of them up and down."""
     turn = 2 * np.pi * np.arange(4) / 4
     sides = [*np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1), np.array([0, 0, 1.0]), np.array([0, 0, -1.0])]
     return from_strands([([0.0 * u, 0.42 * u, 1.1 * u], (0.4, 0.14, 0.07)) for u in sides])

@@ -57,13 +57,13 @@ def hammer() -> ConeGraph:
 
 
 def y_shape() -> ConeGraph:
-    """Three arms from one joint."""
+    """Three arms from one junction."""
     arms = [(0, 0, -0.9), (0.65, 0, 0.65), (-0.65, 0, 0.65)]
     return from_strands([([(0, 0, 0), arm], 0.14) for arm in arms])
 
 
 def cross() -> ConeGraph:
-    """Four arms from one joint."""
+    """Four arms from one junction."""
     arms = [(0.8, 0, 0), (-0.8, 0, 0), (0, 0, 0.8), (0, 0, -0.8)]
     return from_strands([([(0, 0, 0), arm], 0.13) for arm in arms])
 
@@ -99,7 +99,7 @@ def torus() -> ConeGraph:
 
 
 def two_holed_torus() -> ConeGraph:
-    """Two rings that share a point: two loops, one joint."""
+    """Two rings that share a point: two loops, one junction."""
     left, right = _circle(48, 0.5, (-0.5, 0, 0)), _circle(48, 0.5, (0.5, 0, 0))
     right[:, 0] = -left[:, 0]
     return from_strands([(left, 0.14), (right, 0.14)])

@@ -14,18 +14,62 @@ PATCHES = 8  # holes that --missing is spread over
 
 
 def shape_graph(name: str) -> ConeGraph:
-    """Return the round cones of a named shape."""
+    """Return the round cones of a named shape, with lengths of the order of one.
+
+    Parameters
+    ----------
+    name : str
+        One of the names in :data:`tiskel.gallery.catalogue.SHAPES`, such as "y", "torus" or "hand".
+
+    Returns
+    -------
+    ConeGraph
+        The curve skeleton of the shape, with radii.
+
+    Raises
+    ------
+    TiskelError
+        For another name; the message lists them all.
+
+    Examples
+    --------
+    >>> from tiskel import shape_graph
+    >>> torus = shape_graph("torus")
+    >>> torus.loops, torus.ends
+    (1, 0)
+    """
     if name not in SHAPES:
         raise TiskelError(f"no shape is called {name!r}; choose one of {', '.join(SHAPES)}")
     return SHAPES[name]()
 
 
 def make_shape(shape: ConeGraph, params: ShapeParams | None = None) -> tuple[Points, Skeleton]:
-    """Return a cloud (n, 3) of the shape and its analytic skeleton.
+    """Return a cloud of a shape and its true skeleton.
 
     The surface is sampled uniformly by area, then thinned towards one end of
     its longest axis, cut by patches and blurred, as the settings say; the same
     seed gives the same bytes.
+
+    Parameters
+    ----------
+    shape : ConeGraph
+        A union of round cones, such as :func:`tiskel.shape_graph` returns.
+    params : ShapeParams, optional
+        The settings.
+
+    Returns
+    -------
+    cloud : (n, 3) float64
+        Points on the surface, in the units of the shape.
+    skeleton : Skeleton
+        The graph of the shape as the skeleton of this cloud.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("hand"), ShapeParams(count=2000, missing=0.1))
+    >>> cloud.shape, true.ends
+    ((2000, 3), 6)
     """
     params = params or ShapeParams()
     generator = np.random.default_rng(params.seed)
@@ -62,7 +106,7 @@ def _cut(points: Points, surplus: int, generator: np.random.Generator) -> Points
 
 
 def analytic_skeleton(shape: ConeGraph, cloud: Points) -> Skeleton:
-    """Return the graph of the round cones as a skeleton of the cloud, each point with its nearest node."""
+    """Return the graph of a shape as a skeleton of a cloud (n, 3), each point with its nearest node."""
     everyone = np.arange(len(cloud), dtype=np.int32)
     none = np.empty((0, 3))
     return Skeleton(

@@ -26,7 +26,17 @@ TRIES = 400  # of one part, and of a whole graph
 
 @dataclass(frozen=True)
 class RandomGraph:
-    """A shape, how many loops it has, and how many points make a fair cloud of it."""
+    """A random shape and what is known of it.
+
+    Attributes
+    ----------
+    shape : ConeGraph
+        The round cones, with radii from 1 to 4.
+    loops : int
+        How many loops it has.
+    count : int
+        How many points make a fair cloud of it.
+    """
 
     shape: ConeGraph
     loops: int
@@ -34,9 +44,29 @@ class RandomGraph:
 
 
 def random_graph(seed: int, loops: int | None = None) -> RandomGraph:
-    """Return a random connected graph of round cones with 0 to 4 loops; half of all seeds give trees.
+    """Return a random connected graph of round cones; half of all seeds give trees.
 
-    Raises TiskelError for a number of loops that 12 edges cannot hold.
+    Parameters
+    ----------
+    seed : int
+        The same seed gives the same graph.
+    loops : int, optional
+        Number of loops, from 0 to 4; without it the seed decides.
+
+    Returns
+    -------
+    RandomGraph
+
+    Raises
+    ------
+    TiskelError
+        For a number of loops that 12 edges cannot hold, and where no graph was found.
+
+    Examples
+    --------
+    >>> from tiskel.gallery.random_graphs import random_graph
+    >>> random_graph(1, loops=2).shape.loops
+    2
     """
     if loops is not None and not 0 <= loops <= EDGES[1] // 3:
         raise TiskelError(f"loops must be between 0 and {EDGES[1] // 3}, got {loops}")

@@ -14,7 +14,26 @@ JOIN = 1e-9  # strand points closer than this are one node
 
 
 def from_strands(strands: Iterable[Strand], *, open_ends: bool = False) -> ConeGraph:
-    """Join polylines into one graph; nodes at the same place become one, with the larger radius."""
+    """Join polylines into one graph; nodes at the same place become one, with the larger radius.
+
+    Parameters
+    ----------
+    strands : iterable of (positions, radii)
+        Positions (m, 3) along each polyline, and its radii (m,) or one radius, in the same unit.
+    open_ends : bool
+        Whether the first and the last node leave no ball, so that the tube is open there.
+
+    Returns
+    -------
+    ConeGraph
+
+    Examples
+    --------
+    >>> from tiskel.gallery.strands import from_strands
+    >>> cross = from_strands([([(-1, 0, 0), (0, 0, 0), (1, 0, 0)], 0.2), ([(0, 0, 0), (0, 1, 0)], (0.3, 0.1))])
+    >>> cross.radii.tolist()
+    [0.2, 0.3, 0.2, 0.1]
+    """
     nodes: list[npt.NDArray[np.float64]] = []
     radii: list[float] = []
     edges: list[tuple[int, int]] = []

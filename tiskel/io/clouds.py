@@ -22,15 +22,31 @@ MESH_SAMPLES = 4096  #: points that a mesh is sampled to where no number is aske
 
 @dataclass(frozen=True)
 class Cloud:
-    """A point cloud as it was read.
+    r"""A point cloud as it was read.
 
     Attributes
     ----------
-    points : (n, 3) float64, in the file's units; rows may be NaN or Inf.
-    properties : further columns of the file by name, (n,) each.
-    name : file name without folders; "stdin" for standard input.
-    sha256 : of the file.
-    warnings : what happened on the way in.
+    points : (n, 3) float64
+        In the file's units; rows may be NaN or Inf.
+    properties : mapping of str to (n,) array
+        Further columns of the file by name.
+    name : str
+        The file's name without folders; "stdin" for standard input.
+    sha256 : str
+        Of the file.
+    warnings : tuple of str
+        What had to be decided while reading.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from tiskel import load_cloud
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "c.csv").write_text("x,y,z,intensity\n0,0,0.5,7\n1,0,0.5,8\n")
+    ...     cloud = load_cloud(f"{folder}/c.csv")
+    >>> cloud.name, cloud.points.shape, cloud.properties["intensity"].tolist()
+    ('c.csv', (2, 3), [7.0, 8.0])
     """
 
     points: Points
@@ -46,22 +62,63 @@ class Cloud:
 
 
 def load_cloud(source: str | Path, *, mesh_samples: int | None = None, seed: int = 0) -> Cloud:
-    """Read a cloud; a mesh is sampled to points.
+    r"""Read a cloud; a mesh is sampled to points.
 
     Parameters
     ----------
-    source : a path (PLY, XYZ, PTS, CSV, TXT, NPY, NPZ, PCD, OFF, OBJ; STL through Open3D; each also packed by gzip),
-        or "-" for standard input, where PLY, NPY, NPZ, PCD, OFF and text tell themselves apart.
-    mesh_samples : points to sample a mesh to; None: 4096.
-    seed : of that sampling.
+    source : str or Path
+        A path (PLY, XYZ, PTS, CSV, TXT, NPY, NPZ, PCD, OFF, OBJ; STL through Open3D; each also packed by gzip), or "-"
+        for standard input, where PLY, NPY, NPZ, PCD, OFF and text tell themselves apart.
+    mesh_samples : int, optional
+        Points to sample a mesh to; without it 4096.
+    seed : int
+        Of that sampling.
 
-    Raises TiskelError where the file is missing, damaged, empty or of an unknown kind.
+    Returns
+    -------
+    Cloud
+
+    Raises
+    ------
+    TiskelError
+        Where the file is missing, damaged, empty or of an unknown kind.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from tiskel import load_cloud
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "c.xyz").write_text("0 0 0.5\n1 0 0.5\n")
+    ...     load_cloud(f"{folder}/c.xyz").points.tolist()
+    [[0.0, 0.0, 0.5], [1.0, 0.0, 0.5]]
     """
     return parse_cloud(read_bytes(source), source, mesh_samples=mesh_samples, seed=seed)
 
 
 def parse_cloud(data: bytes, source: str | Path, *, mesh_samples: int | None = None, seed: int = 0) -> Cloud:
-    """Return the cloud in bytes that were read from a source; see :func:`load_cloud`."""
+    """Return the cloud in the bytes of a file.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    source : str or Path
+        Where it was read from; the suffix says of which kind it is, "-" that the bytes do.
+    mesh_samples : int, optional
+        Points to sample a mesh to; without it 4096.
+    seed : int
+        Of that sampling.
+
+    Returns
+    -------
+    Cloud
+
+    Raises
+    ------
+    TiskelError
+        Where the bytes are damaged, hold no points or are of an unknown kind.
+    """
     name = "stdin" if str(source) == STANDARD else Path(source).name
     if not data:
         raise TiskelError(f"{name} is empty; check how it was made")
@@ -79,7 +136,20 @@ def parse_cloud(data: bytes, source: str | Path, *, mesh_samples: int | None = N
 
 
 def dump_cloud(points: Points, target: str | Path) -> bytes:
-    """Return the points in the format that the suffix of the target asks for; PLY for standard output."""
+    """Return the bytes of a cloud file.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud.
+    target : str or Path
+        Where it is to go: the suffix says in which format; PLY for standard output.
+
+    Raises
+    ------
+    TiskelError
+        Where clouds are not written in this format.
+    """
     return writer_of(".ply" if str(target) == STANDARD else Path(target).suffix)(points)
 
 

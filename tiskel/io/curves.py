@@ -27,24 +27,79 @@ class Curve(CurveGraph):
 
     Attributes
     ----------
+    nodes : (v, 3) float64
+        Where the nodes are.
+    edges : (e, 2) int32
+        The two nodes of every edge, as the file has them.
+    radii : (v,) float64
+        NaN: radii are not read.
+    bridged : (e,) bool
+        False: files of curves do not say.
     name : str
         The file's name without folders; "stdin" for standard input.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel import Curve
+    >>> curve = Curve(np.eye(3), np.array([[0, 1], [1, 2]], np.int32), name="bow.obj")
+    >>> curve.name, curve.ends, round(curve.length, 3)
+    ('bow.obj', 2, 2.828)
     """
 
     name: str = field(default="", kw_only=True)
 
 
 def load_curve(source: str | Path) -> Curve:
-    """Read a curve: PLY with or without edges, OBJ lines, SWC, GraphML, JSON; "-" is standard input.
+    """Read a curve.
 
-    Text and NumPy files give nodes without edges. Raises TiskelError where the
-    file is missing, damaged or of an unknown kind.
+    Parameters
+    ----------
+    source : str or Path
+        A path (PLY with or without edges, OBJ lines, SWC, GraphML, JSON), or "-" for standard input. Text and NumPy
+        files give nodes without edges.
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    TiskelError
+        Where the file is missing, damaged or of an unknown kind.
+
+    Examples
+    --------
+    >>> import json, tempfile
+    >>> from pathlib import Path
+    >>> from tiskel import load_curve
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "c.json").write_text(json.dumps({"nodes": [[0, 0, 0], [0, 0, 2]], "edges": [[0, 1]]}))
+    ...     load_curve(f"{folder}/c.json").length
+    2.0
     """
     return parse_curve(read_bytes(source), source)
 
 
 def parse_curve(data: bytes, source: str | Path) -> Curve:
-    """Return the curve in bytes that were read from a source; see :func:`load_curve`."""
+    """Return the curve in the bytes of a file.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    source : str or Path
+        Where it was read from; the suffix says of which kind it is, "-" that the bytes do.
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    TiskelError
+        Where the bytes are damaged or of an unknown kind.
+    """
     name = "stdin" if str(source) == STANDARD else Path(source).name
     kind = Path(name).suffix.lower() if name != "stdin" else _kind(data)
     if kind not in FORMATS:

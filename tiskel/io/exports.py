@@ -7,22 +7,22 @@ from collections.abc import Callable
 
 import numpy as np
 
-import tiskel
 from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.skeleton import Skeleton
+from tiskel.version import version
 
 
 def to_obj(s: Skeleton) -> bytes:
-    """Return vertices and one line element per branch; CloudCompare and MeshLab show these, unlike PLY edges."""
-    lines = [f"# tiskel {tiskel.__version__} skeleton", *(f"v {x!r} {y!r} {z!r}" for x, y, z in s.nodes.tolist())]
+    """Return OBJ: vertices and one line element per branch; CloudCompare and MeshLab show these, unlike PLY edges."""
+    lines = [f"# tiskel {version()} skeleton", *(f"v {x!r} {y!r} {z!r}" for x, y, z in s.nodes.tolist())]
     lines += ["l " + " ".join(str(node + 1) for node in branch) for branch in s.branches if len(branch) > 1]
     return ("\n".join(lines) + "\n").encode()
 
 
 def to_json(s: Skeleton) -> bytes:
-    """Return one document with nodes, edges, radius, branches, the node of every point, and counts."""
+    """Return one JSON document with nodes, edges, radius, branches, the node of every point, counts and warnings."""
     document = {
-        "tiskel": tiskel.__version__,
+        "tiskel": version(),
         "nodes": s.nodes.tolist(),
         "edges": s.edges.tolist(),
         "radius": s.radius.tolist(),
@@ -43,7 +43,7 @@ def to_swc(s: Skeleton) -> bytes:
     order, parent = spanning_forest(s)
     name = {node: i + 1 for i, node in enumerate(order)}
     kept = {tuple(sorted((node, up))) for node, up in parent.items() if up >= 0}
-    lines = [f"# tiskel {tiskel.__version__} skeleton", "# id type x y z radius parent"]
+    lines = [f"# tiskel {version()} skeleton", "# id type x y z radius parent"]
     lines += [f"# loop {name[a]} {name[b]}" for a, b in s.edges.tolist() if (a, b) not in kept]
     for node in order:
         x, y, z = s.nodes[node].tolist()
@@ -53,7 +53,20 @@ def to_swc(s: Skeleton) -> bytes:
 
 
 def spanning_forest(s: Skeleton) -> tuple[list[int], dict[int, int]]:
-    """Return nodes in breadth-first order and the parent of each, -1 for roots; ends are preferred as roots."""
+    """Return the nodes of a skeleton breadth first, and the parent of each.
+
+    Parameters
+    ----------
+    s : Skeleton
+        The curve; an end of each component is its root where it has one.
+
+    Returns
+    -------
+    order : list of int
+        All nodes, parents before children.
+    parent : dict of int to int
+        The parent of every node, -1 for roots.
+    """
     around = s.neighbours
     order: list[int] = []
     parent: dict[int, int] = {}

@@ -17,7 +17,23 @@ from tiskel.io.streams import read_bytes
 
 @dataclass(frozen=True)
 class Measurable:
-    """A cloud (n, 3), skeletal points (m, 3) with their origin (m, 3), a curve; None where there is none."""
+    """What :func:`tiskel.evaluate` measures, all in one unit; None where there is none.
+
+    Attributes
+    ----------
+    name : str
+        The name of the file that came first.
+    cloud : (n, 3) float64
+        The cloud; no row where there is none.
+    points : (m, 3) float64 or None
+        Skeletal points.
+    origin : (m, 3) float64 or None
+        Where they came from.
+    nodes : (v, 3) float64 or None
+        Nodes of the curve.
+    edges : (e, 2) int32 or None
+        The two nodes of every edge.
+    """
 
     name: str
     cloud: Points = field(default_factory=lambda: np.zeros((0, 3)))
@@ -32,7 +48,25 @@ def gather(
 ) -> Measurable:
     """Read what there is; what is named on its own takes the place of what a stage file holds.
 
-    Raises TiskelError where in the end there is no cloud, or nothing to measure against it.
+    Parameters
+    ----------
+    skeleton : Path or None
+        A stage file, or a curve.
+    cloud : Path, optional
+        A cloud.
+    points : Path, optional
+        Skeletal points: a cloud, or a stage file, which brings their origin along.
+    curve : Path, optional
+        A curve.
+
+    Returns
+    -------
+    Measurable
+
+    Raises
+    ------
+    TiskelError
+        Where in the end there is no cloud, or nothing to measure against it.
     """
     found = Measurable("") if skeleton is None else _parsed(read_bytes(skeleton), skeleton)
     if points is not None:

@@ -7,7 +7,15 @@ from tiskel.slicing.mesh import Mesh
 
 
 def dump_mesh(mesh: Mesh, source: dict[str, str] | None = None) -> bytes:
-    """Return a binary PLY file, triangles counter-clockwise seen from outside: the same bytes for the same mesh."""
+    """Return a mesh as binary PLY: the same bytes for the same mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Triangles, counter-clockwise seen from outside.
+    source : dict, optional
+        Name and SHA-256 of the input.
+    """
     faces: dict[str, Any] = {"vertex_indices": ply.ragged(list(mesh.triangles))}
     elements = [
         ply.element("vertex", ply.xyz(mesh.vertices)),

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from plyfile import PlyData, PlyElement, PlyParseError
 
-import tiskel
 from tiskel.errors import TiskelError
+from tiskel.version import version
 
 Columns = Mapping[str, npt.NDArray[Any]]
 MAGIC = b"ply"
@@ -20,7 +20,20 @@ SMALLEST_ROW = 1  # byte; no element of a binary file can hold more rows than th
 
 
 def parse(data: bytes, name: str) -> PlyData:
-    """Return the elements of a PLY file; raise TiskelError where it is cut short, too long or no PLY."""
+    """Return the elements of a PLY file.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where it is cut short, too long or no PLY.
+    """
     stream = io.BytesIO(data)
     try:
         header = PlyData._parse_header(io.BytesIO(data))
@@ -51,7 +64,17 @@ def _surplus(ply: PlyData, data: bytes, stream: io.BytesIO) -> str:
 
 
 def element(name: str, columns: Columns, lists: Mapping[str, tuple[str, str]] | None = None) -> PlyElement:
-    """Return an element of named columns; lists gives length and value type of list columns."""
+    """Return an element of a PLY file.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    columns : mapping of str to (n,) array
+        Its properties by name.
+    lists : mapping of str to (str, str), optional
+        Types of length and values, of those columns that hold lists.
+    """
     lists = lists or {}
     count = len(next(iter(columns.values())))
     kinds = [(key, object if key in lists else np.asarray(column).dtype) for key, column in columns.items()]
@@ -64,7 +87,7 @@ def element(name: str, columns: Columns, lists: Mapping[str, tuple[str, str]] | 
 
 
 def ragged(rows: Sequence[npt.NDArray[np.int32]]) -> npt.NDArray[Any]:
-    """Return lists of different lengths as one column."""
+    """Return int32 lists of different lengths as one column of objects."""
     column = np.empty(len(rows), dtype=object)
     for i, row in enumerate(rows):
         column[i] = np.asarray(row, np.int32)
@@ -72,8 +95,18 @@ def ragged(rows: Sequence[npt.NDArray[np.int32]]) -> npt.NDArray[Any]:
 
 
 def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -> bytes:
-    """Return a binary little-endian file; facts become comment lines of JSON."""
-    comments = [f"tiskel {tiskel.__version__} {stage}"]
+    """Return a binary little-endian file.
+
+    Parameters
+    ----------
+    elements : sequence of PlyElement
+        What the file holds.
+    stage : str
+        The name of the stage, for the first comment.
+    facts : mapping
+        Further comments, each a name and JSON.
+    """
+    comments = [f"tiskel {version()} {stage}"]
     everything = {"format": FORMAT, **facts}
     comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in everything.items()]
     out = io.BytesIO()
@@ -82,7 +115,22 @@ def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -
 
 
 def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
-    """Return the comment facts of a stage file; raise where it is not of this stage."""
+    """Return the facts in the comments of a stage file.
+
+    Parameters
+    ----------
+    ply : PlyData
+        The file.
+    stage : str
+        The stage that is needed.
+    name : str
+        The file's name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is none of this stage, or of a newer format.
+    """
     head = next((c.split() for c in ply.comments if c.startswith("tiskel ")), None)
     if head is None or len(head) != 3 or head[2] != stage:
         found = f"a {head[2]} file" if head and len(head) == 3 else "no tiskel stage file"
@@ -102,7 +150,7 @@ def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
 
 
 def source_of(data: bytes, stage: str, name: str) -> dict[str, str]:
-    """Return the name and SHA-256 of the cloud that a stage file was made from."""
+    """Return name and SHA-256 of the cloud that the bytes of a stage file were made from; see :func:`facts`."""
     return dict(facts(parse(data, name), stage, name).get("source", {}))
 
 
@@ -110,12 +158,12 @@ VERB = {"contraction": "contract", "skeleton": "skeleton"}
 
 
 def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -> npt.NDArray[np.float64]:
-    """Return three columns as (n, 3)."""
+    """Return three named columns of a table of n rows as (n, 3) float64."""
     return np.stack([np.asarray(table[name], np.float64) for name in names], axis=1).reshape(-1, 3)
 
 
 def xyz(points: npt.NDArray[np.float64], names: Sequence[str] = ("x", "y", "z")) -> dict[str, npt.NDArray[np.float64]]:
-    """Return (n, 3) as three named columns."""
+    """Return points (n, 3) as three columns by name."""
     return {name: points[:, axis] for axis, name in enumerate(names)}
 
 

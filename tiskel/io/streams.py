@@ -11,7 +11,13 @@ STANDARD = "-"
 
 
 def read_bytes(source: str | Path) -> bytes:
-    """Return what a file or standard input ("-") holds."""
+    """Return what a file or standard input ("-") holds.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is missing, a folder, or cannot be read.
+    """
     if str(source) == STANDARD:
         return sys.stdin.buffer.read()
     path = Path(source)
@@ -26,7 +32,20 @@ def read_bytes(source: str | Path) -> bytes:
 
 
 def write_bytes(target: str | Path, data: bytes) -> None:
-    """Write a file beside its target and rename it, or write to standard output ("-")."""
+    """Write a file beside its target and rename it, or write to standard output.
+
+    Parameters
+    ----------
+    target : str or Path
+        A path, or "-" for standard output. A file is whole or absent, never cut short.
+    data : bytes
+        What is written.
+
+    Raises
+    ------
+    TiskelError
+        Where the target is a folder or cannot be written.
+    """
     if str(target) == STANDARD:
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()

@@ -60,6 +60,13 @@ class StepRecord:
         Points left after the step.
     seconds : dict
         Wall time per part; no part of a comparison, nor of a file.
+
+    Examples
+    --------
+    >>> from tiskel import LbcParams, ShapeParams, contract, make_shape, shape_graph
+    >>> steps = contract(make_shape(shape_graph("capsule"), ShapeParams(count=1000))[0], LbcParams(max_steps=2)).steps
+    >>> steps[1].points, steps[1].ring_ratio < steps[0].ring_ratio < 1, steps[1].score
+    (1000, True, None)
     """
 
     contraction_weight: float

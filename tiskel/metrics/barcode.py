@@ -25,9 +25,12 @@ class Barcode:
 
     Attributes
     ----------
-    deaths : (n - 1,) of H0, longest first; bars of length zero, of which coincident points make some, are counted
-        in, the infinite bar is left out.
-    cycles : (b, 2) births and deaths of H1 in the Delaunay-Rips complex, by falling ratio; none where not asked for.
+    deaths : (n - 1,) float64
+        Deaths in H0, longest first. Bars of length zero, which coincident points make, are counted in; the infinite
+        bar is left out.
+    cycles : (b, 2) float64
+        Births and deaths in H1 of the Delaunay-Rips complex, by falling ratio of death to birth; no row where loops
+        were not asked for.
     """
 
     deaths: Numbers
@@ -35,7 +38,32 @@ class Barcode:
 
 
 def barcode(points: Points, *, loops: bool = False) -> Barcode:
-    """Return the barcode of points (n, 3), of H0 or of H0 and H1."""
+    """Return the barcode of points.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The points, in any unit.
+    loops : bool
+        Whether H1 is computed beside H0.
+
+    Returns
+    -------
+    Barcode
+        In the unit of the points; without bars where there are fewer than two points.
+
+    References
+    ----------
+    A. Mishra, F. Motta: Stability and machine learning applications of persistent homology using the Delaunay-Rips
+    complex, 2023.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.metrics.barcode import barcode
+    >>> barcode(np.array([[0, 0, 0], [1, 0, 0], [4.0, 0, 0]])).deaths.tolist()
+    [3.0, 1.0]
+    """
     if len(points) < 2:
         return Barcode(np.zeros(0), NO_CYCLES)
     diagrams = _persistence(points, int(loops))
@@ -60,7 +88,7 @@ def _persistence(points: Points, dimension: int) -> list[Numbers]:
 
 
 def delaunay_edges(points: Points) -> Indices:
-    """Return (e, 2) the edges of the Delaunay triangulation, lower row first.
+    """Return (e, 2) int32, the edges of the Delaunay triangulation of points (n, 3), lower row first.
 
     A point that the triangulation leaves out, because it coincides with
     another, is joined to that one. Points on a plane or a line are triangulated

@@ -1,18 +1,15 @@
 """Boundedness: is a place surrounded by the cloud?
 
-beta(x) is the area of the convex hull of the unit vectors from x to all points,
-as a share of the sphere's. A point on a flat, endless surface has
-(2 pi + pi) / 4 pi = 0.75, and bounded is what has at least that much. The
-definition assumes a convex shape: a third of the places just outside a torus
-tube pass it; see :mod:`tiskel.geometry.oriented` for a true inside test.
+beta(x) is the area of the convex hull of the unit vectors from x to all points, as a share of the sphere's. A point on
+a flat, endless surface has (2 pi + pi) / 4 pi = 0.75, and bounded is what has at least that much. The definition
+assumes a convex shape: a third of the places just outside a torus tube pass it; see :mod:`tiskel.geometry.oriented`
+for a true inside test.
 
-The hull costs milliseconds per place, so what is clear is settled without it.
-Where directions cover a share c of the sphere, beta is hardly below c (2 - c), the
-value of a single cap; each point covers the cells that the disc of its spacing
-meets. Outside the convex hull of the cloud all directions lie in a half-space,
-and beta is below 0.75. For the rest the hull is taken: of one vector per cell,
-whose beta can only be too small, and where that does not do, of all vectors along
-the rim of what is covered and of one in each cell further in.
+The hull costs milliseconds per place, so what is clear is settled without it. Where directions cover a share c of the
+sphere, beta is hardly below c (2 - c), the value of a single cap; each point covers the cells that the disc of its
+spacing meets. Outside the convex hull of the cloud all directions lie in a half-space, and beta is below 0.75. For the
+rest the hull is taken: of one vector per cell, whose beta can only be too small, and where that does not do, of all
+vectors along the rim of what is covered and of one in each cell further in.
 """
 
 from dataclasses import dataclass
@@ -42,11 +39,15 @@ class Boundedness:
 
     Attributes
     ----------
-    bounded : (m,).
-    beta : (m,), where the hull settled it exact to 0.01 below the threshold and a lower bound above; elsewhere that of
-        a single cap.
-    settled_by : (m,) 0 coverage, 1 outside the convex hull of the cloud, 2 hull of the unit vectors.
-    coincident : (m,) points of the cloud at the very place, which have no direction and are left out.
+    bounded : (m,) bool
+        Whether beta is at least 0.75.
+    beta : (m,) float64
+        Share of the sphere; where the hull settled it, exact to 0.01 below the threshold and a lower bound above;
+        elsewhere that of a single cap.
+    settled_by : (m,) int32
+        0: coverage, 1: outside the convex hull of the cloud, 2: hull of the unit vectors.
+    coincident : (m,) int32
+        Points of the cloud at the very place, which have no direction and are left out.
     """
 
     bounded: Mask
@@ -58,12 +59,25 @@ class Boundedness:
         return len(self.beta)
 
     def take(self, rows: slice) -> "Boundedness":
-        """Return the same of some places."""
+        """Return the same of the places in a slice of rows."""
         return Boundedness(self.bounded[rows], self.beta[rows], self.settled_by[rows], self.coincident[rows])
 
 
 def boundedness(places: Points, cloud: Points) -> Boundedness:
-    """Return how places (m, 3) are surrounded by a cloud (n, 3); both in one unit, any."""
+    """Tell how places are surrounded by a cloud.
+
+    Parameters
+    ----------
+    places : (m, 3) float64
+        Where to look from, in the unit of the cloud.
+    cloud : (n, 3) float64
+        The cloud, in any unit.
+
+    Returns
+    -------
+    Boundedness
+        One row per place.
+    """
     blocks = np.array_split(places, max(1, -(-len(places) // BLOCK)))
     curve, parts = morton_curve(cloud), []
     spacing = cKDTree(cloud).query(curve.points, min(DISC_NEIGHBOURS, len(cloud)))[0].mean(axis=1)
@@ -74,13 +88,16 @@ def boundedness(places: Points, cloud: Points) -> Boundedness:
 
 @dataclass(frozen=True)
 class Coverage:
-    """What is seen from places.
+    """The directions in which places see a cloud.
 
     Attributes
     ----------
-    shares : (m,) of the sphere, up to 0.8.
-    seen : (m, cells) row of the first point in each cell of the cube map, -1 for none.
-    coincident : (m,) points at the very place.
+    shares : (m,) float64
+        Covered share of the sphere; counting stops at 0.8.
+    seen : (m, cells) int32
+        Row of the first point in each cell of the cube map, -1 for none.
+    coincident : (m,) int32
+        Points at the very place.
     """
 
     shares: Numbers
@@ -89,7 +106,17 @@ class Coverage:
 
 
 def coverage(places: Points, curve: MortonCurve, spacing: Numbers) -> Coverage:
-    """Return how much of the sphere of directions a cloud along its Morton curve covers; spacing (n,) of its points."""
+    """Return how much of the sphere of directions a cloud covers.
+
+    Parameters
+    ----------
+    places : (m, 3) float64
+        Where to look from, in the unit of the cloud.
+    curve : MortonCurve
+        The points (n, 3) in the order of a Morton curve.
+    spacing : (n,) float64
+        Radius of the disc that each of these points stands for.
+    """
     from tiskel.kernels import coverage as kernel
 
     shares, coincident = np.empty(len(places)), np.empty(len(places), np.int32)
@@ -140,7 +167,7 @@ def outside_hull(places: Points, cloud: Points) -> Mask:
 
 
 def hull_share(place: Points, cloud: Points) -> float:
-    """Return beta of one place, from the hull of the directions that matter."""
+    """Return beta of one place (3,) in a cloud (n, 3), from the hull of the directions that matter."""
     vectors = unit(cloud[_that_matter(_cells(place, cloud))] - place)
     return _hull_area(_thinned(vectors) if len(vectors) > MANY else vectors) / (4 * np.pi)
 

@@ -15,17 +15,41 @@ FEWEST = 3  # points that make a section
 
 
 def neighbourhood_size(count: int) -> int:
-    """Return N for so many skeletal points: 1 % of them, 10 where that is below 10, 30 where it is above 50 [T]."""
+    """Return N, the number of skeletal points that are averaged, for so many in all.
+
+    N is 1 % of them, rounded; 10 where that is below 10, 30 where it is above
+    50 [T]; never more than there are.
+    """
     size = int(np.floor(0.01 * count + 0.5))
     return min(count, 10 if size < 10 else 30 if size > 50 else size)
 
 
 def point_centredness(points: Points, originals: Points) -> Numbers:
-    """Return c (m,) of skeletal points (m, 3) and their originals (m, 3), before boundedness is asked for.
+    """Return the centredness c of skeletal points, before boundedness is asked for.
 
     Among the N nearest skeletal points, itself included,
     c = 1 - |mean originals - mean skeletal| / mean |original - skeletal|, at
     least 0. Where nothing moved, c is 1 if the means agree.
+
+    Parameters
+    ----------
+    points : (m, 3) float64
+        Skeletal points, in any unit.
+    originals : (m, 3) float64
+        The points of the cloud that they stand for, in the same unit.
+
+    Returns
+    -------
+    (m,) float64
+        c from 0 to 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.metrics.centredness import point_centredness
+    >>> ring = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4), np.zeros(8)], axis=1)
+    >>> point_centredness(np.zeros((8, 3)), ring).round(6).tolist()
+    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
     """
     near = nearest_neighbours(points, neighbourhood_size(len(points)))[0]
     apart = np.linalg.norm((originals[near] - points[near]).mean(axis=1), axis=1)
@@ -36,13 +60,18 @@ def point_centredness(points: Points, originals: Points) -> Numbers:
 
 @dataclass(frozen=True)
 class Sections:
-    """What the sections across a curve say.
+    """What the sections across a curve say, one row per sample of the curve.
 
     Attributes
     ----------
-    centredness : (q,), NaN where invalid.
-    stand_in : (q,) which have no ellipse, so that mean and largest distance stand in.
-    directionless, sparse : (q,) why others are invalid: no direction, fewer than three points.
+    centredness : (q,) float64
+        c from 0 to 1, NaN where the section is invalid.
+    stand_in : (q,) bool
+        Sections through which no ellipse fits, so that mean and largest distance stand in.
+    directionless : (q,) bool
+        Invalid, because the curve has no direction at the sample.
+    sparse : (q,) bool
+        Invalid, because fewer than three points lie in the section.
     """
 
     centredness: Numbers
@@ -52,11 +81,25 @@ class Sections:
 
 
 def curve_centredness(samples: CurveSamples, cloud: Points, params: MetricParams) -> Sections:
-    """Return c = 1 - |sample - centre| / mean semi-axis, at least 0, of the section at each place on a curve.
+    """Return c = 1 - |sample - centre| / mean semi-axis, at least 0, of the section at each sample of a curve.
 
-    Of the cloud (n, 3) what lies within the slab across the curve, projected
-    along it, and, in order of distance from the place, only what comes before
-    the first gap: a point more than 1.5 times as far away as the one before [T].
+    The section holds the points within a slab across the curve, projected along
+    it, and, in order of distance from the sample, only those before the first
+    gap: a point more than 1.5 times as far away as the one before [T].
+
+    Parameters
+    ----------
+    samples : CurveSamples
+        Places (q, 3) on the curve and its directions there, in the unit of the cloud.
+    cloud : (n, 3) float64
+        The cloud, in any unit.
+    params : MetricParams
+        ``slab``, half the thickness as a share of the diagonal, and ``gap`` count.
+
+    Returns
+    -------
+    Sections
+        One row per sample.
     """
     value = np.full(len(samples.points), np.nan)
     stand_in, sparse = np.zeros(len(value), bool), np.zeros(len(value), bool)
@@ -72,7 +115,24 @@ def curve_centredness(samples: CurveSamples, cloud: Points, params: MetricParams
 
 
 def slab_members(cloud: Points, centres: Points, directions: Points, half: float) -> list[Indices]:
-    """Return the rows of the cloud within half of the plane through each centre (q, 3) across its direction (q, 3)."""
+    """Return the points in a slab across each direction.
+
+    Parameters
+    ----------
+    cloud : (n, 3) float64
+        The cloud, in any unit.
+    centres : (q, 3) float64
+        A point in the middle plane of each slab.
+    directions : (q, 3) float64
+        The unit normal of each slab.
+    half : float
+        Half the thickness, in the unit of the cloud.
+
+    Returns
+    -------
+    list of (k,) int32
+        The rows of the cloud in each slab.
+    """
     from tiskel.kernels.slabs import slab_counts, slab_members
 
     counts = np.empty(len(centres), np.int32)
@@ -85,7 +145,7 @@ def slab_members(cloud: Points, centres: Points, directions: Points, half: float
 
 
 def in_plane(vectors: Points, direction: npt.NDArray[np.float64]) -> Numbers:
-    """Return (n, 2) coordinates across a unit direction (3,)."""
+    """Return (n, 2) the coordinates of vectors (n, 3) on the plane across a unit direction (3,)."""
     helper = np.eye(3)[np.argmin(np.abs(direction))]
     u = np.cross(direction, helper)
     u /= np.linalg.norm(u)
@@ -93,7 +153,19 @@ def in_plane(vectors: Points, direction: npt.NDArray[np.float64]) -> Numbers:
 
 
 def before_gap(flat: Numbers, gap: float) -> Numbers:
-    """Return the points (n, 2) before the first that is more than gap times as far from the origin as the last."""
+    """Return the points of a section before its first gap, nearest first.
+
+    Parameters
+    ----------
+    flat : (n, 2) float64
+        Points about the sample, which is the origin.
+    gap : float
+        A gap is a point more than so many times as far from the origin as the one before it.
+
+    Returns
+    -------
+    (k, 2) float64
+    """
     distance = np.linalg.norm(flat, axis=1)
     order = np.argsort(distance, kind="stable")
     jumps = np.flatnonzero(distance[order][1:] > gap * distance[order][:-1])
@@ -101,7 +173,12 @@ def before_gap(flat: Numbers, gap: float) -> Numbers:
 
 
 def section_centredness(section: Numbers) -> tuple[float, bool]:
-    """Return c of the origin in a section (n, 2), and whether mean and largest distance stood in for an ellipse."""
+    """Return c of the origin in a section (n, 2), and whether mean and largest distance stood in for an ellipse.
+
+    References
+    ----------
+    A. Fitzgibbon, M. Pilu, R. Fisher: Direct least square fitting of ellipses. PAMI 21(5), 1999.
+    """
     ellipse = fit_ellipse(section)
     if ellipse is not None:
         return max(0.0, 1 - float(np.linalg.norm(ellipse.centre) / ellipse.axes.mean())), False

@@ -12,12 +12,37 @@ from tiskel.errors import TiskelError
 
 
 def bottleneck(a: Numbers, b: Numbers, *, diagonal: bool = True) -> float:
-    """Return the bottleneck distance of two lists of deaths (n,) and (m,), in their unit.
+    """Return the bottleneck distance of two H0 barcodes.
 
     With a threshold t every bar longer than 2 t needs a partner within t. If a
     bar goes to the diagonal while a shorter one is matched, the two can change
     places; so the longest are matched in order and the rest go to the diagonal.
-    Raises TiskelError where the diagonal is not allowed and the counts differ.
+
+    Parameters
+    ----------
+    a : (n,) float64
+        Deaths of the first barcode, in any order and unit.
+    b : (m,) float64
+        Deaths of the second, in the same unit.
+    diagonal : bool
+        Whether a bar may be matched to the diagonal.
+
+    Returns
+    -------
+    float
+        In the unit of the deaths.
+
+    Raises
+    ------
+    TiskelError
+        Where the diagonal is not allowed and the counts differ.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.metrics.distances import bottleneck
+    >>> bottleneck(np.array([4.0, 1.0]), np.array([3.0]))
+    1.0
     """
     a, b = _padded(a, b, diagonal)
     if len(a) == 0:
@@ -31,13 +56,38 @@ def bottleneck(a: Numbers, b: Numbers, *, diagonal: bool = True) -> float:
 
 
 def wasserstein(a: Numbers, b: Numbers, *, diagonal: bool = True) -> float:
-    """Return the 1-Wasserstein distance (the sum over the matching) of two lists of deaths (n,) and (m,).
+    """Return the 1-Wasserstein distance of two H0 barcodes, the sum over the best matching.
 
     Alignment of two sorted lists by dynamic programming: the cheapest way to
     treat the first i and the first j bars is D[i, j], the least of
     D[i-1, j] + a_i / 2, D[i, j-1] + b_j / 2 and D[i-1, j-1] + |a_i - b_j|. The
     second, which depends on its own row, is a running minimum.
-    Raises TiskelError where the diagonal is not allowed and the counts differ.
+
+    Parameters
+    ----------
+    a : (n,) float64
+        Deaths of the first barcode, in any order and unit.
+    b : (m,) float64
+        Deaths of the second, in the same unit.
+    diagonal : bool
+        Whether a bar may be matched to the diagonal.
+
+    Returns
+    -------
+    float
+        In the unit of the deaths.
+
+    Raises
+    ------
+    TiskelError
+        Where the diagonal is not allowed and the counts differ.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.metrics.distances import wasserstein
+    >>> wasserstein(np.array([4.0, 1.0]), np.array([3.0]))
+    1.5
     """
     a, b = _padded(a, b, diagonal)
     if not diagonal:

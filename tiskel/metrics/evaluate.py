@@ -46,9 +46,11 @@ def evaluate(
         In any unit; rows that are not finite are dropped, duplicates counted once. A skeleton brings its cloud,
         contracted points and curve along.
     points : (m, 3) array_like, optional
-        Skeletal (contracted) points.
-    nodes, edges : (v, 3) and (e, 2) array_like, optional
-        The curve skeleton.
+        Skeletal (contracted) points, in the unit of the cloud.
+    nodes : (v, 3) array_like, optional
+        Nodes of the curve skeleton, in the unit of the cloud.
+    edges : (e, 2) array_like of int, optional
+        The two nodes of every edge of the curve, counted from 0.
     origin : (m, 3) array_like, optional
         Where the skeletal points came from. Without it they belong to the rows of the cloud where there are as
         many, else to the nearest point of the cloud; the result says which.
@@ -58,6 +60,7 @@ def evaluate(
     Returns
     -------
     Quality
+        Values of every place, and the overall values by :meth:`Quality.as_dict`.
 
     Raises
     ------
@@ -67,8 +70,8 @@ def evaluate(
 
     Examples
     --------
-    >>> from tiskel import evaluate, make_shape, shape_graph
-    >>> cloud, true = make_shape(shape_graph("torus"))
+    >>> from tiskel import ShapeParams, evaluate, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("torus"), ShapeParams(count=1000))
     >>> quality = evaluate(true)
     >>> quality.loops.solid, quality.loops.graph
     (1, 1)

@@ -27,11 +27,18 @@ class Loops:
 
     Attributes
     ----------
-    surface : loops of the surface, from its persistent homology.
-    solid : handles of the solid inside.
-    graph : independent loops of the curve.
-    bars : (b, 2) births and deaths in H1 in normalised units, by falling ratio.
-    points : size of the subset that surface and solid were taken from.
+    surface : int or None
+        Loops of the surface, from its persistent homology.
+    solid : int or None
+        Handles of the solid inside.
+    graph : int or None
+        Independent loops of the curve.
+    bars : (b, 2) float64
+        Births and deaths in H1, in normalised units, by falling ratio.
+    points : int
+        Size of the subset of the cloud that surface and solid were taken from.
+    reasons : dict of str to str
+        Why a number is None, by the name of its field.
     """
 
     surface: int | None
@@ -43,7 +50,23 @@ class Loops:
 
 
 def count_loops(bars: Numbers, surface: OrientedCloud, subject: Subject, params: MetricParams) -> Loops:
-    """Count the loops of a surface with bars (b, 2) in H1, of the solid inside it, and of the subject's curve."""
+    """Count the loops of a surface, of the solid inside it, and of a curve.
+
+    Parameters
+    ----------
+    bars : (b, 2) float64
+        Births and deaths of the surface in H1, in normalised units.
+    surface : OrientedCloud
+        The points that the bars were taken from, with normals.
+    subject : Subject
+        Its curve is counted.
+    params : MetricParams
+        ``loop_ratio`` says how long a bar must last.
+
+    Returns
+    -------
+    Loops
+    """
     lasting = int((bars[:, 1] >= params.loop_ratio * bars[:, 0]).sum())
     solid, reason = solid_handles(surface)
     if solid is not None and solid > lasting:  # every handle of the solid is a loop of its surface, too

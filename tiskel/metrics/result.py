@@ -25,11 +25,20 @@ class PointQuality:
 
     Attributes
     ----------
-    points, originals : (m, 3).
-    boundedness : see :class:`tiskel.metrics.boundedness.Boundedness`.
-    inside : (m,) or None where the normals cannot be oriented.
-    centredness : (m,), 0 where unbounded; raw_centredness : (m,), wherever it is.
-    smoothness : (m,), NaN where a tangent is undefined.
+    points : (m, 3) float64
+        The skeletal points.
+    originals : (m, 3) float64
+        The points of the cloud that they stand for.
+    boundedness : Boundedness
+        How each is surrounded by the cloud.
+    inside : (m,) bool or None
+        Whether each is inside the surface; None where the normals cannot be oriented.
+    centredness : (m,) float64
+        c from 0 to 1; 0 where unbounded.
+    raw_centredness : (m,) float64
+        c wherever the point is.
+    smoothness : (m,) float64
+        s from 0 to 1; NaN where a tangent is undefined.
     """
 
     points: Points
@@ -47,12 +56,28 @@ class CurveQuality:
 
     Attributes
     ----------
-    nodes, edges : (v, 3), (e, 2).
-    samples : (q,) places on the curve.
-    boundedness, inside, sections : at the samples.
-    centredness : (q,), 0 where unbounded, NaN where invalid.
-    vertices, smoothness : (d,) vertices with two neighbours, and s there.
-    overall_smoothness : weighted by length; hairpins : vertices where the curve turns back.
+    nodes : (v, 3) float64
+        Where the nodes are.
+    edges : (e, 2) int32
+        The two nodes of every edge.
+    samples : CurveSamples
+        The q places on the curve that are measured.
+    boundedness : Boundedness
+        How each sample is surrounded by the cloud.
+    inside : (q,) bool or None
+        Whether each sample is inside the surface; None where the normals cannot be oriented.
+    sections : Sections
+        The section of the cloud across each sample.
+    centredness : (q,) float64
+        c from 0 to 1; 0 where unbounded, NaN where the section is invalid.
+    vertices : (d,) int32
+        The nodes with two neighbours.
+    smoothness : (d,) float64
+        s from 0 to 1 at each of these.
+    overall_smoothness : float or None
+        Mean of s weighted by length; None for a curve without length.
+    hairpins : int
+        Vertices where the curve turns back.
     """
 
     nodes: Points
@@ -70,20 +95,43 @@ class CurveQuality:
 
 @dataclass(frozen=True)
 class Quality:
-    """How good a skeleton is. :meth:`as_dict` gives the overall values, None with a reason where there is none.
+    """How good a skeleton is; :meth:`as_dict` gives the overall values, None with a reason where there is none.
 
     Attributes
     ----------
-    topology : distances of H0 barcodes, in normalised units; None without skeletal points.
-    loops : of surface, solid and curve.
-    points : per skeletal point; None without any.
-    curve : per sample and vertex; None without an edge.
-    graph : components, loops, ends, joints, length in the input's units; None without a curve.
-    cloud_points : points of the cloud that counted.
-    correspondence : how originals were found: "given", "rows", "nearest" or "none".
-    oriented_by, orientation : what the normals were oriented by, and the share of points where they agree.
-    params, warnings : settings, and what a user should know.
-    seconds : wall time per part; no part of the document.
+    topology : Topology or None
+        Distances of H0 barcodes, in normalised units; None without skeletal points.
+    loops : Loops
+        Numbers of loops of surface, solid and curve.
+    points : PointQuality or None
+        Values per skeletal point; None without any.
+    curve : CurveQuality or None
+        Values per sample and vertex; None without an edge.
+    graph : dict or None
+        Components, loops, ends, junctions ("joints") and length (input's units) of the curve; None without one.
+    cloud_points : int
+        Points of the cloud that counted.
+    correspondence : str
+        How originals were found: "given", "rows", "nearest" or "none".
+    oriented_by : str
+        What the normals were oriented by.
+    orientation : float
+        Share of points where the normals agree.
+    unoriented : str
+        Why there is no inside test; empty where there is one.
+    params : MetricParams
+        The settings.
+    warnings : tuple of str
+        What was left out of the input.
+    seconds : dict of str to float
+        Wall time per part; no part of the document.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, evaluate, make_shape, shape_graph
+    >>> quality = evaluate(make_shape(shape_graph("y"), ShapeParams(count=1000))[1])
+    >>> quality.graph["ends"], quality.points, quality.as_dict()["centredness"]["reasons"]
+    (3, None, {'points': 'no skeletal points were given'})
     """
 
     topology: Topology | None
@@ -177,7 +225,7 @@ class Quality:
 
 
 def share(mask: Mask | None) -> float | None:
-    """Return the share of True, None of nothing."""
+    """Return the share of True in a mask; None for no mask or an empty one."""
     return None if mask is None or len(mask) == 0 else float(mask.mean())
 
 

@@ -12,7 +12,11 @@ HAIRPIN = 0.5  # D_n below which a curve turns back: less than a right angle bet
 
 
 def nearest_others(points: Points, count: int) -> Indices:
-    """Return (m, count) the nearest other points; where many coincide, any of them but the point itself."""
+    """Return (m, count) int32, the rows of the nearest other points of each of points (m, 3), nearest first.
+
+    Fewer columns where there are not so many. Where many points coincide, any of
+    them but the point itself may stand for the nearest.
+    """
     near = nearest_neighbours(points, min(count + 1, len(points)))[0]
     itself = near == np.arange(len(points))[:, None]
     itself[~itself.any(axis=1), -1] = True  # more duplicates than neighbours: the last makes room
@@ -20,7 +24,10 @@ def nearest_others(points: Points, count: int) -> Indices:
 
 
 def tangents(points: Points, others: Indices) -> Points:
-    """Return (m, 3) the leading eigenvector of the scatter of other points about each; NaN where all coincide."""
+    """Return (m, 3) the unit tangent at each of points (m, 3), from the rows of its neighbours, others (m, k).
+
+    It is the leading eigenvector of their scatter about the point; NaN where all of them are at its place.
+    """
     d = points[others] - points[:, None]
     scatter = np.einsum("nki,nkj->nij", d, d)
     leading = np.linalg.eigh(scatter)[1][:, :, 2]
@@ -28,9 +35,23 @@ def tangents(points: Points, others: Indices) -> Points:
 
 
 def point_smoothness(points: Points, params: MetricParams) -> Numbers:
-    """Return s (m,) of skeletal points (m, 3): min over the nearest others of |1 - 2 D_n|, D_n = arccos(t . t') / pi.
+    """Return the smoothness s of skeletal points.
 
-    NaN where a tangent is undefined: for a point alone, and where all of its neighbours are at its place.
+    s is the minimum over the nearest others of |1 - 2 D_n|, with
+    D_n = arccos(t . t') / pi for the tangents t and t'.
+
+    Parameters
+    ----------
+    points : (m, 3) float64
+        Skeletal points, in any unit.
+    params : MetricParams
+        ``tangent_neighbours`` and ``smooth_neighbours`` count.
+
+    Returns
+    -------
+    (m,) float64
+        s from 0 to 1; NaN where a tangent is undefined: for a point alone, and where all of its neighbours are at
+        its place.
     """
     if len(points) < 2:
         return np.full(len(points), np.nan)
@@ -51,9 +72,9 @@ def vertex_smoothness(curve: CurveGraph) -> tuple[Indices, Numbers]:
 
 
 def curve_smoothness(curve: CurveGraph) -> float | None:
-    """Return 1 - sum w_i (1 - s_i) / W of a curve; w_i half the length of a vertex's two edges, W the total length.
+    """Return the overall smoothness of a curve, 1 - sum w_i (1 - s_i) / W; None for a curve without length.
 
-    None for a curve without length.
+    w_i is half the length of a vertex's two edges, W the total length.
     """
     total = curve.length
     if total == 0:

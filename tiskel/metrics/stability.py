@@ -1,16 +1,12 @@
 """Is a contraction stable: do normals and curvatures change from step to step as they do where a curve comes out?
 
-On a curve the normal of a principal component analysis is any direction across
-it. Oriented by one rule, before and after, the angle between the two is then
-uniform between 0 and a right angle: D = angle / pi has mean 1/4, spread 0.144 and
-skewness 0. On a surface that has hardly moved D is near 0; where points have
-drifted along the shape it exceeds 1/2. The distance from that uniform
-distribution is what is judged, with the change of curvature, which grows where
-a clump or a thick tube is left.
+On a curve the normal of a principal component analysis is any direction across it. Oriented by one rule, before and
+after, the angle between the two is then uniform between 0 and a right angle: D = angle / pi has mean 1/4, spread 0.144
+and skewness 0. On a surface that has hardly moved D is near 0; where points have drifted along the shape it exceeds
+1/2. The distance from uniform is judged, and the change of curvature, which grows where a clump or thick tube is left.
 
-Departure from print: there the normals have no orientation, and mean 1/2 with
-skewness 0 is taken as a sign of stability. Random signs alone give that on every
-cloud, good or bad: the control beside each step shows it, and fails the test here.
+Departure from print: there the normals have no orientation, and mean 1/2 with skewness 0 is taken as a sign of
+stability. Random signs alone give that on every cloud: the control beside each step shows it, and fails the test here.
 """
 
 from dataclasses import asdict, dataclass
@@ -34,12 +30,12 @@ SPAN = {"angle": (0.0, 1.0), "curvature": (-1 / 3, 1 / 3)}  # what values can be
 
 @dataclass(frozen=True)
 class Distribution:
-    """Mean, spread (standard deviation), skewness (0 where there is no spread), and number of peaks."""
+    """The shape of a distribution; its values have no unit."""
 
-    mean: float
-    spread: float
-    skewness: float
-    peaks: int
+    mean: float  #: arithmetic mean
+    spread: float  #: standard deviation
+    skewness: float  #: 0 where there is no spread
+    peaks: int  #: number of peaks of the histogram
 
 
 @dataclass(frozen=True)
@@ -48,15 +44,19 @@ class StepStability:
 
     Attributes
     ----------
-    angles : (m,) D_theta = arccos(n_k . n_0) / pi; curvatures : (m,) kappa_k - kappa_0.
-    angle, curvature : their distributions; control : that of the angles under random signs.
-    distance, control_distance : largest difference of the cumulative distributions of the angles, and of the
-        control, from the uniform one on [0, 1/2].
-    median_curvature : median of the curvatures.
-    in_hull : share of points in the convex hull of the step before.
-    in_cloud : share of points inside the original cloud; None where its normals cannot be oriented.
-    control_passes : whether random signs would be judged stable; if they were, this step would be no evidence.
-    stable, reason : the verdict.
+    angles : (m,) float64, D_theta = arccos(n_k . n_0) / pi of each point.
+    curvatures : (m,) float64, kappa_k - kappa_0 of each point.
+    angle : Distribution of the angles.
+    curvature : Distribution of the curvatures.
+    control : Distribution of the angles under random signs.
+    distance : float, the largest difference of the angles' cumulative distribution from the uniform one on [0, 1/2].
+    control_distance : float, the same of the control.
+    median_curvature : float, the median of the curvatures.
+    in_hull : float, share of points in the convex hull of the step before.
+    in_cloud : float or None, share of points inside the original cloud; None where its normals cannot be oriented.
+    control_passes : bool, whether random signs would be judged stable; if so, this step is no evidence.
+    stable : bool, the verdict.
+    reason : str, why.
     """
 
     angles: Numbers
@@ -80,8 +80,16 @@ class Stability:
 
     Attributes
     ----------
-    steps : one per accepted step.
-    points : of the m points that survive all steps, how many there are.
+    steps : tuple of StepStability, one per accepted step.
+    points : int, how many points survive all steps.
+    params : StabilityParams, the settings.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, assess_stability, contract, make_shape, shape_graph
+    >>> stability = assess_stability(contract(make_shape(shape_graph("capsule"), ShapeParams(count=1000))[0]))
+    >>> stability.stable, stability.points, len(stability.steps) == len(stability.as_dict()["steps"])
+    (True, 1000, True)
     """
 
     steps: tuple[StepStability, ...]
@@ -90,10 +98,12 @@ class Stability:
 
     @property
     def stable(self) -> bool:
+        """Whether the last step is stable."""
         return self.steps[-1].stable
 
     @property
     def reason(self) -> str:
+        """Why it is, or why not, in one sentence."""
         return self.steps[-1].reason
 
     def as_dict(self) -> dict[str, Any]:
@@ -114,10 +124,22 @@ def _plain(step: StepStability) -> dict[str, Any]:
 def assess_stability(contraction: Contraction, params: StabilityParams | None = None) -> Stability:
     """Judge the steps of a contraction by how normals and curvatures change.
 
-    Only points that survive all steps count; their normals are those of each
-    other's neighbourhoods. Both normals of a point are oriented away from its
-    final position, as seen from where it came from. Raises TiskelError where
-    the contraction kept no step.
+    Only points that survive all steps count; both normals of a point are oriented away from its final position.
+
+    Parameters
+    ----------
+    contraction : Contraction, with its history.
+    params : StabilityParams, optional; the settings.
+
+    Raises
+    ------
+    TiskelError : where the contraction kept no step, or its file no history.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, assess_stability, contract, make_shape, shape_graph
+    >>> assess_stability(contract(make_shape(shape_graph("banana"), ShapeParams(count=1000))[0])).stable
+    True
     """
     params = params or StabilityParams()
     c = contraction
@@ -194,20 +216,20 @@ def distance_from_uniform(angles: Numbers) -> float:
 
 
 def distribution(values: Numbers, kind: str, params: StabilityParams) -> Distribution:
-    """Return mean, spread, skewness and peaks of angles or of changes of curvature."""
+    """Return mean, spread, skewness and peaks of values (m,); kind "angle" or "curvature" says what they can be."""
     mean, spread = float(values.mean()), float(values.std())
     skewness = float(((values - mean) ** 3).mean() / spread**3) if spread > 0 else 0.0
     return Distribution(mean, spread, skewness, peaks(values, SPAN[kind], params))
 
 
 def peaks(values: Numbers, span: tuple[float, float], params: StabilityParams) -> int:
-    """Return the number of peaks of a histogram that falls by the prominence on both sides of each."""
+    """Return the number of peaks of the histogram of values (m,): it falls by the prominence on both sides of each."""
     shares = np.histogram(values, params.bins, span)[0] / len(values)
     return len(find_peaks(np.concatenate([[0], shares, [0]]), prominence=params.prominence)[0])
 
 
 def verdict(distance: float, median: float, angles: Numbers, params: StabilityParams) -> tuple[bool, str]:
-    """Return whether a step is stable, and why or why not."""
+    """Return whether a step is stable, and why: by distance, median change of curvature and angles (m,)."""
     if distance > params.distance:
         return False, f"{_why_not(angles)} (distance {distance:.3f}, at most {params.distance})"
     if median > params.curvature:

@@ -28,17 +28,26 @@ NO_POINTS: Points = np.zeros((0, 3))
 
 @dataclass(frozen=True)
 class Subject:
-    """All in normalised coordinates.
+    """A cloud and the skeleton that is measured against it, in normalised coordinates.
 
     Attributes
     ----------
-    cloud : (n, 3), finite and distinct.
-    points, originals : (m, 3), skeletal points and the points of the cloud they stand for; no row where none are given.
-    correspondence : "given", "rows" (as many points as the cloud has, row by row) or "nearest".
-    curve : without nodes where none is given.
-    curve_given : whether one is, be it empty.
-    frame : how to get back to the input's units.
-    warnings : what was left out on the way in.
+    cloud : (n, 3) float64
+        The cloud, finite and distinct.
+    points : (m, 3) float64
+        Skeletal points; no row where none are given.
+    originals : (m, 3) float64
+        The points of the cloud that they stand for.
+    correspondence : str
+        "given", "rows" (as many points as the cloud has, row by row), "nearest", or "none" without skeletal points.
+    curve : CurveGraph
+        The curve; without nodes where none is given.
+    curve_given : bool
+        Whether a curve is given, be it empty.
+    frame : Frame
+        The way back to the input's units.
+    warnings : tuple of str
+        What was left out on the way in.
     """
 
     cloud: Points
@@ -72,7 +81,33 @@ def make_subject(
     origin: npt.ArrayLike | None,
     kind: Normalisation,
 ) -> Subject:
-    """Check and clean what is to be measured; raise TiskelError where it makes no sense."""
+    """Check, clean and normalise what is to be measured.
+
+    Parameters
+    ----------
+    cloud : (n, 3) array_like
+        In any unit.
+    points : (m, 3) array_like or None
+        Skeletal points, in the unit of the cloud.
+    nodes : (v, 3) array_like or None
+        Nodes of the curve, in the unit of the cloud.
+    edges : (e, 2) array_like of int or None
+        The two nodes of every edge, counted from 0.
+    origin : (m, 3) array_like or None
+        Where the skeletal points came from.
+    kind : "side" or "diagonal"
+        The length of the cloud that is scaled to 1.6.
+
+    Returns
+    -------
+    Subject
+
+    Raises
+    ------
+    TiskelError
+        For a cloud without a body, numbers of rows that do not match, nodes that are not finite, edges to nodes that
+        are not there.
+    """
     given = as_points(cloud)
     whole = given[finite_rows(given)]
     distinct = np.ascontiguousarray(whole[np.unique(first_of_duplicates(whole))] if len(whole) else whole)

@@ -13,7 +13,17 @@ Value = float | int | bool | str | None
 
 @dataclass(frozen=True)
 class Column:
-    """One measure: where it stands in the document, its heading, and which value is best."""
+    """One measure in a table of skeletons.
+
+    Attributes
+    ----------
+    path : (str, str)
+        The section and the key of its value in the document.
+    heading : str
+        The heading of its column.
+    best : str
+        Which value is best: "high", "low", or nothing where none is.
+    """
 
     path: tuple[str, str]
     heading: str
@@ -21,6 +31,7 @@ class Column:
 
     @property
     def key(self) -> str:
+        """The name of the column in CSV."""
         return "_".join(self.path)
 
 
@@ -46,7 +57,7 @@ COLUMNS = (
 
 
 def row_of(document: Document) -> dict[str, Value]:
-    """Return the overall values of one skeleton by key."""
+    """Return the overall values of one skeleton by column key, from its document."""
     return {column.key: document[column.path[0]][column.path[1]] for column in COLUMNS}
 
 
@@ -62,14 +73,14 @@ def best_rows(rows: Sequence[dict[str, Value]]) -> set[tuple[int, str]]:
 
 
 def said(value: Value) -> str:
-    """Return a value as a table shows it."""
+    """Return a value as a table shows it: four digits of a number, nothing for None."""
     if value is None:
         return ""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def to_csv(rows: Sequence[dict[str, Any]]) -> bytes:
-    """Return rows of equal keys as CSV with a header; a missing value is empty."""
+    """Return rows of equal keys as CSV with a header, in UTF-8; a missing value is empty."""
     out = io.StringIO()
     writer = csv.DictWriter(out, list(rows[0]), lineterminator="\n")
     writer.writeheader()

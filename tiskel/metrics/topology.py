@@ -18,10 +18,20 @@ class Topology:
 
     Attributes
     ----------
-    bottleneck, wasserstein : d_B, and d_W divided by the number of bars; None with a reason.
-    bars : number of bars kept of each.
-    similar : both distances are below d*.
-    original, skeletal : (b,) the bars kept, longest first.
+    bottleneck : float or None
+        The bottleneck distance d_B; None with a reason.
+    wasserstein : float or None
+        The 1-Wasserstein distance divided by the number of bars, d_W; None with a reason.
+    bars : int
+        Number of bars kept of each barcode.
+    similar : bool or None
+        Whether both distances are below d*.
+    original : (b,) float64
+        The bars kept of the original points, longest first.
+    skeletal : (b,) float64
+        The bars kept of the skeletal points, longest first.
+    reason : str
+        Why there are no distances; empty where there are.
     """
 
     bottleneck: float | None
@@ -34,10 +44,25 @@ class Topology:
 
 
 def compare_topology(original: Points, before: Numbers, after: Numbers, params: MetricParams) -> Topology:
-    """Compare the deaths of original points (n, 3) with those of skeletal points, all in normalised units.
+    """Compare the H0 barcode of the original points with that of the skeletal points.
 
     Bars are chosen as :class:`tiskel.MetricParams` says; the infinite bar of
     each is left out.
+
+    Parameters
+    ----------
+    original : (n, 3) float64
+        The original points, in normalised units.
+    before : (n - 1,) float64
+        Their deaths, longest first.
+    after : (m - 1,) float64
+        The deaths of the skeletal points, longest first.
+    params : MetricParams
+        ``bars``, ``diagonal`` and ``similar`` count.
+
+    Returns
+    -------
+    Topology
     """
     kept = bars_kept(original, before, params.bars)
     before, after = before[:kept], after[:kept]
@@ -52,9 +77,15 @@ def compare_topology(original: Points, before: Numbers, after: Numbers, params: 
 def bars_kept(points: Points, deaths: Numbers, rule: str) -> int:
     """Return how many of the longest bars of the original points are compared.
 
-    "toolbox": those longer than the 99th percentile of the nearest-neighbour
-    distances, or 5 % of all where these are fewer. "max": those longer than the
-    largest nearest-neighbour distance, as the paper has it.
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The original points.
+    deaths : (n - 1,) float64
+        Their deaths, in the unit of the points.
+    rule : "toolbox" or "max"
+        "toolbox": bars longer than the 99th percentile of the nearest-neighbour distances, or 5 % of all where these
+        are fewer. "max": bars longer than the largest nearest-neighbour distance, as the paper has it.
     """
     nearest = cKDTree(points).query(points, [min(2, len(points))])[0][:, 0]
     if rule == "max":

@@ -21,11 +21,24 @@ class Agreement:
 
     Attributes
     ----------
-    components, loops : found minus true.
-    ends : of the true ends, how many have a found end of their own within one local radius; true_ends : how many
-        there are; spurious_ends : found ends that are nobody's.
-    to_truth, to_truth_95 : mean and 95th percentile of the distance from the found curve to the true one.
-    from_truth, from_truth_95 : the same the other way. None where nothing was found.
+    components : int
+        Components found minus true ones.
+    loops : int
+        Loops found minus true ones.
+    true_ends : int
+        Number of true ends.
+    ends : int
+        True ends that have a found end of their own within one local radius.
+    spurious_ends : int
+        Found ends that belong to no true end.
+    to_truth : float or None
+        Mean distance from the found curve to the true one; None where nothing was found.
+    to_truth_95 : float or None
+        95th percentile of the same.
+    from_truth : float or None
+        Mean distance from the true curve to the found one; None where nothing was found.
+    from_truth_95 : float or None
+        95th percentile of the same.
     """
 
     components: int
@@ -40,14 +53,37 @@ class Agreement:
 
     @property
     def topology_right(self) -> bool:
+        """Whether components and loops are as many as they should be."""
         return self.components == 0 and self.loops == 0
 
     def as_dict(self) -> dict[str, float | None]:
+        """Return the fields as plain JSON values."""
         return asdict(self)
 
 
 def agreement(curve: CurveGraph, truth: ConeGraph) -> Agreement:
-    """Compare a found curve with the graph of a shape, in the shape's units."""
+    """Compare a found curve with the graph of a shape.
+
+    Parameters
+    ----------
+    curve : CurveGraph
+        The found curve, in the units of the shape.
+    truth : ConeGraph
+        The shape, whose graph is the true curve.
+
+    Returns
+    -------
+    Agreement
+
+    Examples
+    --------
+    >>> from tiskel import shape_graph
+    >>> from tiskel.metrics.truth import agreement
+    >>> shape = shape_graph("y")
+    >>> found = agreement(shape, shape)
+    >>> found.topology_right, found.ends, found.spurious_ends
+    (True, 3, 0)
+    """
     matched, true_ends, found_ends = matched_ends(curve, truth)
     forth, back = _distances(curve, truth)
     return Agreement(
@@ -64,7 +100,24 @@ def agreement(curve: CurveGraph, truth: ConeGraph) -> Agreement:
 
 
 def matched_ends(curve: CurveGraph, truth: ConeGraph) -> tuple[int, int, int]:
-    """Return how many true ends have a found end of their own within one radius, and how many of either there are."""
+    """Match found ends to true ones, one to one, within one local radius.
+
+    Parameters
+    ----------
+    curve : CurveGraph
+        The found curve, in the units of the shape.
+    truth : ConeGraph
+        The shape.
+
+    Returns
+    -------
+    matched : int
+        True ends that have a found end of their own.
+    true : int
+        Number of true ends.
+    found : int
+        Number of found ends.
+    """
     true, found = np.flatnonzero(truth.degrees == 1), np.flatnonzero(curve.degrees == 1)
     if len(true) == 0 or len(found) == 0:
         return 0, len(true), len(found)

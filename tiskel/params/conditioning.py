@@ -17,8 +17,8 @@ class ConditioningParams:
     Examples
     --------
     >>> from tiskel import ConditioningParams
-    >>> ConditioningParams(voxel=0.01).noise_kind
-    'coordinates'
+    >>> ConditioningParams(outliers=True, voxel=0.05).cap
+    False
     """
 
     crop: tuple[float, ...] | None = None  #: xmin, ymin, zmin, xmax, ymax, zmax

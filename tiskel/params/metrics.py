@@ -12,7 +12,14 @@ Bars = Literal["toolbox", "max"]
 
 @dataclass(frozen=True, kw_only=True)
 class MetricParams:
-    """Settings of :func:`tiskel.evaluate`; d_B and d_W in normalised units, the rest are ratios and counts."""
+    """Settings of :func:`tiskel.evaluate`; d_B and d_W in normalised units, the rest are ratios and counts.
+
+    Examples
+    --------
+    >>> from tiskel import MetricParams
+    >>> MetricParams(bars="max").similar
+    0.02
+    """
 
     bars: Bars = "toolbox"  #: which H0 bars are compared: [T], or those longer than every nearest-neighbour distance
     diagonal: bool = True  #: bars may be matched to the diagonal [T]; the paper has bijections only

@@ -22,20 +22,29 @@ class RollParams:
     object in the axes of the sphere's own frame at the contact ("sphere"), or
     of the sphere in the axes of the cloud ("world"); velocities are those of
     the material at the contact and have no part along the normal.
+
+    Examples
+    --------
+    >>> from tiskel import RollParams, TiskelError
+    >>> RollParams(side="inside", omega=(0, 2, 0)).sigma
+    -1.0
+    >>> try:
+    ...     RollParams(rate=0)
+    ... except TiskelError as error:
+    ...     print(error)
+    rate must be a positive number, got 0
     """
 
-    model: Model = "global"
-    side: Side = "outside"
+    model: Model = "global"  #: on the surface as it is; "local": on one made straight along its skeleton
+    side: Side = "outside"  #: of the surface that the sphere rolls on
     radius: float | None = None  #: of the sphere; None: a quarter of the median radius of the surface
-    omega: tuple[float, float, float] = (0.0, 1.0, 0.0)
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: slip
-    twist: Twist = "object"
+    omega: tuple[float, float, float] = (0.0, 1.0, 0.0)  #: angular velocity, radians per second
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: slip, lengths per second
+    twist: Twist = "object"  #: whose axes omega and velocity are in, see above
     duration: float | None = None  #: None: 10, or as long as the inputs last
     rate: float = 100.0  #: rows of the trajectory per second
     start: tuple[float, float, float, float, float] = (0.1, pi / 2, 0.1, 0.1, pi / 2)  #: u_o, v_o, u_s, v_s, psi [T]
-    start_at: tuple[float, float, float] | None = (
-        None  #: instead of u_o and v_o, the point of the surface nearest to it
-    )
+    start_at: tuple[float, float, float] | None = None  #: instead of u_o and v_o: the surface's point nearest to it
     normals: Normals = "surface"  #: where curvature comes from; "pca": normals of neighbours, as printed, to compare
     neighbours: int = 20  #: of these normals [T]
     meet: bool = True  #: the run ends where the sphere meets another part of the cloud
@@ -59,5 +68,5 @@ class RollParams:
 
     @property
     def sigma(self) -> float:
-        """1 outside, -1 inside."""
+        """The side as a sign: 1 outside, -1 inside."""
         return 1.0 if self.side == "outside" else -1.0

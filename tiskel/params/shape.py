@@ -13,8 +13,8 @@ class ShapeParams:
     Examples
     --------
     >>> from tiskel import ShapeParams
-    >>> ShapeParams(noise=0.05).count
-    4096
+    >>> ShapeParams(count=1000, noise=0.1)
+    ShapeParams(count=1000, noise=0.1, missing=0.0, uneven=1.0, seed=0)
     """
 
     count: int = 4096  #: points of the result

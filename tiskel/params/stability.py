@@ -15,6 +15,12 @@ class StabilityParams:
     0.21 and more, and nothing lies between 0.11 and 0.14. Curves have median
     changes of curvature below 0.016, clumps and tubes that are still thick
     above 0.03.
+
+    Examples
+    --------
+    >>> from tiskel import StabilityParams
+    >>> StabilityParams(neighbours=12).distance
+    0.12
     """
 
     neighbours: int = 9  #: whose scatter gives normal and curvature, the point included [T]

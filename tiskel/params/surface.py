@@ -13,9 +13,16 @@ OrderRule = Literal["cross-validated", "published"]
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceParams:
-    """Settings of :func:`tiskel.fit_surface`; lengths in the input's unit, angles in radians."""
+    """Settings of :func:`tiskel.fit_surface`; lengths in the input's unit, angles in radians.
 
-    branch: str = "all"  #: a number, "all", or "longest": the longest path between two ends, through joints
+    Examples
+    --------
+    >>> from tiskel import SurfaceParams
+    >>> SurfaceParams(branch="longest", most_order=5).least_order
+    3
+    """
+
+    branch: str = "all"  #: a number, "all", or "longest": the longest path between two ends, through junctions
     interval: float = 0.02  #: between slices, as a share of the diagonal of the cloud [T]
     m: tuple[float, float, float] | FrameRule = (0.0, 0.0, 1.0)  #: sets where u is 0 [T]
     order_rule: OrderRule = "cross-validated"  #: or until the RMS error is below fit_error, in the unit of length [T]

@@ -20,9 +20,21 @@ MERIDIANS, PARALLELS, DOTS = 6, 3, 48  # what is drawn on the sphere, so that it
 
 
 def animation(surface: FittedSurface, run: Trajectory, kind: str) -> bytes:
-    """Return a film of the first run as GIF or HTML.
+    """Return a film of a run.
 
-    Raises TiskelError for another kind.
+    Parameters
+    ----------
+    surface : FittedSurface
+        What the sphere rolls over; its cloud is drawn.
+    run : Trajectory
+        The run.
+    kind : "gif" or "html"
+        The format: a GIF, or a page that turns under the mouse.
+
+    Raises
+    ------
+    TiskelError
+        For another kind.
     """
     if kind == "gif":
         return _gif(surface, run)

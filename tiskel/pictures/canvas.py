@@ -16,17 +16,27 @@ DPI = 110
 
 
 def new_figure(width: float, height: float) -> Any:
-    """Return an empty matplotlib figure, in inches."""
-    import matplotlib
-
-    matplotlib.use("Agg")
+    """Return an empty matplotlib figure, in inches; without pyplot it needs no backend, and leaves the user's alone."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def rendered(figure: Any, kind: str = "png") -> bytes:
-    """Return the bytes of a figure as PNG, SVG or PDF: the same bytes for the same figure."""
+    """Return the bytes of a figure: the same bytes for the same figure.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        What is drawn.
+    kind : "png", "svg" or "pdf"
+        The format.
+
+    Raises
+    ------
+    TiskelError
+        For another kind.
+    """
     import matplotlib
 
     if kind not in FORMATS:
@@ -51,7 +61,17 @@ def broad_view(cloud: Points) -> Points:
 
 
 def cloud_panel(panel: Any, cloud: Points, view: Points) -> None:
-    """Draw a cloud in grey, at one scale, without ticks."""
+    """Draw a cloud in grey, at one scale, without ticks.
+
+    Parameters
+    ----------
+    panel : matplotlib.axes.Axes
+        Where to.
+    cloud : (n, 3) float64
+        The cloud; of more than 20 000 points some are left out.
+    view : (2, 3) float64
+        The directions that run across and up.
+    """
     shown = cloud[:: max(1, len(cloud) // SHOWN_POINTS)] @ view.T
     panel.scatter(*shown.T, s=1.5, c=CLOUD, linewidths=0)
     panel.set_aspect("equal", adjustable="datalim")
@@ -60,7 +80,26 @@ def cloud_panel(panel: Any, cloud: Points, view: Points) -> None:
 
 
 def heat(panel: Any, places: Points, values: Numbers, view: Points, size: float = 5) -> Any:
-    """Draw places by their values from 0 to 1, those without a value as crosses; return what a colour bar needs."""
+    """Draw places by their values, those without a value as crosses.
+
+    Parameters
+    ----------
+    panel : matplotlib.axes.Axes
+        Where to.
+    places : (n, 3) float64
+        The places.
+    values : (n,) float64
+        From 0 to 1; NaN for none.
+    view : (2, 3) float64
+        The directions that run across and up.
+    size : float
+        Area of a marker, in square points.
+
+    Returns
+    -------
+    matplotlib.collections.PathCollection
+        What a colour bar needs.
+    """
     flat, known = places @ view.T, ~np.isnan(values)
     panel.scatter(*flat[~known].T, s=2 * size, c=INK, marker="x", linewidths=0.6)
     return panel.scatter(*flat[known].T, s=size, c=values[known], cmap=SCALE, vmin=0, vmax=1, linewidths=0)

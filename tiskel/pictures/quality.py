@@ -15,7 +15,19 @@ MEASURES = ("boundedness", "centredness", "smoothness")
 
 
 def quality_picture(qualities: Sequence[tuple[str, Points, Quality]], kind: str = "png") -> bytes:
-    """Return a picture of (name, cloud (n, 3), quality) each: barcodes, heat maps of points and curve, histograms."""
+    """Return a picture of skeletons: barcodes, heat maps of points and curve, histograms.
+
+    Parameters
+    ----------
+    qualities : sequence of (str, (n, 3) float64, Quality)
+        The name, the cloud and the measures of each.
+    kind : "png", "svg" or "pdf"
+        The format.
+
+    Returns
+    -------
+    bytes
+    """
     figure = new_figure(WIDTH, 3 * HEIGHT * len(qualities))
     panels = figure.subplots(3 * len(qualities), COLUMNS, squeeze=False)
     for number, (name, given, quality) in enumerate(qualities):
@@ -38,7 +50,7 @@ Values = dict[str, Numbers]
 
 
 def values_of_points(quality: Quality) -> Values:
-    """Return the values from 0 to 1 of every skeletal point by measure; none without points."""
+    """Return the values (m,) from 0 to 1 of every skeletal point by measure; none without points."""
     p = quality.points
     if p is None:
         return {}
@@ -46,7 +58,7 @@ def values_of_points(quality: Quality) -> Values:
 
 
 def values_of_curve(quality: Quality) -> Values:
-    """Return the values of every sample, or vertex for smoothness, by measure; none without a curve."""
+    """Return the values from 0 to 1 of every sample, or vertex for smoothness, by measure; none without a curve."""
     c = quality.curve
     if c is None:
         return {}

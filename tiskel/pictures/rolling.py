@@ -21,7 +21,23 @@ TURN = np.linspace(0, 2 * np.pi, 73)
 def rolling_picture(
     surface: FittedSurface, runs: Sequence[Trajectory], title: str, kind: str = "png"
 ) -> bytes:  # fmt: skip
-    """Return two rows: ways over object and sphere, and R_o; the five states over time. One colour per run."""
+    """Return a picture of one or two runs: ways over object and sphere, R_o, and the five states over time.
+
+    Parameters
+    ----------
+    surface : FittedSurface
+        What the sphere rolls over; its cloud is drawn.
+    runs : sequence of Trajectory
+        One or two runs, a colour each.
+    title : str
+        The name of the cloud.
+    kind : "png", "svg" or "pdf"
+        The format.
+
+    Returns
+    -------
+    bytes
+    """
     figure = new_figure(15, 7.6)
     grid = figure.add_gridspec(2, 15)
     over, ball, radius = (figure.add_subplot(grid[0, 5 * i : 5 * i + 5]) for i in range(3))

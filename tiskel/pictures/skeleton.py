@@ -36,7 +36,7 @@ def skeleton_picture(skeleton: Skeleton, title: str) -> bytes:
 
 
 def _curve(panel: Any, flat: Points, skeleton: Skeleton) -> None:
-    """Draw the branches, their joints and their ends."""
+    """Draw the branches, their junctions and their ends."""
     for branch in skeleton.branches:
         panel.plot(*flat[branch].T, "-", color="#c0392b", linewidth=1.6, solid_capstyle="round")
     degrees = skeleton.degrees

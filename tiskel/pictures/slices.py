@@ -20,7 +20,21 @@ MOST = 6  # surfaces that get a row of their own
 
 
 def slices_picture(surfaces: Surfaces, title: str, kind: str = "png") -> bytes:
-    """Return a row for each of the longest surfaces: slices, a section in polar and Cartesian form, the surface."""
+    """Return a picture of the longest surfaces: slices, a section in polar and Cartesian form, the surface; a row each.
+
+    Parameters
+    ----------
+    surfaces : Surfaces
+        The surfaces of a skeleton; the six longest are drawn.
+    title : str
+        The name of the cloud.
+    kind : "png", "svg" or "pdf"
+        The format.
+
+    Returns
+    -------
+    bytes
+    """
     longest = sorted(surfaces, key=lambda s: -s.length)[:MOST]
     figure = new_figure(WIDTH, HEIGHT * len(longest) + 0.4)
     grid = figure.add_gridspec(len(longest), 4)

@@ -12,7 +12,23 @@ WIDTH, HEIGHT, TITLE = 3.2, 2.9, 0.4  # inches per panel
 
 
 def stability_picture(contraction: Contraction, stability: Stability, title: str, kind: str = "png") -> bytes:
-    """Return a column per step: turns of the normals, changes of curvature, the contracted points in their cloud."""
+    """Return a column per step: turns of the normals, changes of curvature, the contracted points in their cloud.
+
+    Parameters
+    ----------
+    contraction : Contraction
+        The contraction, with its history.
+    stability : Stability
+        Its steps as they were judged.
+    title : str
+        The name of the cloud.
+    kind : "png", "svg" or "pdf"
+        The format.
+
+    Returns
+    -------
+    bytes
+    """
     count = len(stability.steps)
     figure = new_figure(max(2, count) * WIDTH, 3 * HEIGHT + TITLE)
     panels = figure.subplots(3, count, squeeze=False)

@@ -6,6 +6,7 @@ from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
+from tiskel.geometry.spacing import spacings_from
 
 NEIGHBOURS = 16
 SMALLEST_RIM = 12  # points; smaller groups of boundary points are noise
@@ -14,23 +15,49 @@ WIDEST_GAP = np.pi / 2  # a rim goes round its centre without a larger gap
 
 
 def cap_points(points: Points) -> Points:
-    """Return points (m, 3) on the discs that close the open ends of a cloud, at the cloud's own spacing.
+    """Return points on the discs that close the open ends of a cloud.
 
-    Boundary points see their neighbours on one side only (angle criterion,
-    Bendels et al. 2006). Groups of them that go round their centre are rims;
-    the polygon of a rim, flattened on its best plane, is filled with a square
-    grid.
+    Boundary points see their neighbours on one side only. Groups of them that go
+    round their centre are rims; the polygon of a rim, flattened on its best plane,
+    is filled with a square grid.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+
+    Returns
+    -------
+    (m, 3) float64
+        The points to add, at the cloud's own spacing; none where no end is open.
+
+    References
+    ----------
+    G. Bendels, R. Schnabel, R. Klein: Detecting holes in point set surfaces. WSCG 2006 (the angle criterion).
     """
     k = min(NEIGHBOURS, len(points))
     neighbours, squares = nearest_neighbours(points, k)
-    spacing = float(np.median(np.sqrt(squares[:, min(4, k - 1)])))
+    spacing = float(np.median(spacings_from(squares)))
     boundary = np.flatnonzero(widest_gaps(points, neighbours) > OPEN_ANGLE).astype(np.int32)
     discs = [_disc(points[rim], spacing) for rim in _groups(boundary, neighbours) if len(rim) >= SMALLEST_RIM]
     return np.concatenate([np.empty((0, 3)), *discs])
 
 
 def widest_gaps(points: Points, neighbours: Indices) -> Numbers:
-    """Return the widest angle between successive neighbours of each point, on the plane of its neighbourhood."""
+    """Return the widest angle between successive neighbours of each point, on the plane of its neighbourhood.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud.
+    neighbours : (n, k) int32
+        The rows of each point's neighbours, the point itself among them.
+
+    Returns
+    -------
+    (n,) float64
+        In radians.
+    """
     _, axes = principal_axes(points, neighbours)
     offsets = points[neighbours] - points[:, None]
     flat = np.einsum("nkc,nac->nka", offsets, axes[:, :2])

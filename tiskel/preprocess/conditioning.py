@@ -13,10 +13,37 @@ OUTLIER_DEVIATIONS = 2.0
 
 
 def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple[str, ...]]:
-    """Crop, remove outliers, thin, cap and blur a cloud, in this order; return it with a line per thing done.
+    """Crop, remove outliers, thin, cap and blur a cloud, in this order.
 
     Rows that are not finite are left for the next stage to count, unless
     something is asked for, which drops them here.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    params : ConditioningParams
+        What is done; by default nothing.
+
+    Returns
+    -------
+    points : (m, 3) float64
+        The cloud that is left.
+    report : tuple of str
+        One line for each thing done.
+
+    Raises
+    ------
+    TiskelError
+        Where no point is left.
+
+    Examples
+    --------
+    >>> from tiskel import ConditioningParams, condition, make_shape, shape_graph
+    >>> cloud, _ = make_shape(shape_graph("capsule"))
+    >>> thinned, report = condition(cloud, ConditioningParams(sample=1000))
+    >>> thinned.shape, report
+    ((1000, 3), ('sampling took away 3096 points',))
     """
     report: list[str] = []
     if params == ConditioningParams(seed=params.seed):
@@ -67,12 +94,24 @@ def _inliers(points: Points) -> Mask:
 
 
 def with_noise(points: Points, share: float, kind: NoiseKind = "coordinates", seed: int = 0) -> Points:
-    """Return points (n, 3) with Gaussian noise, as the published experiments have it.
+    """Return a cloud with Gaussian noise, as the published experiments have it.
 
-    "coordinates": the standard deviation is a share of each coordinate, taken
-    from the middle of the bounding box (the evaluation toolbox multiplies raw
-    coordinates, which depends on the origin). "diagonal": it is a share of half
-    the diagonal, the same everywhere, as in the chapter on contraction.
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    share : float
+        The standard deviation, as a share of what ``kind`` says.
+    kind : "coordinates" or "diagonal"
+        "coordinates": of each coordinate, taken from the middle of the bounding box (the evaluation toolbox multiplies
+        raw coordinates, which depends on the origin). "diagonal": of half the diagonal, the same everywhere, as in the
+        chapter on contraction.
+    seed : int
+        Of the noise.
+
+    Returns
+    -------
+    (n, 3) float64
     """
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     scale = points - middle if kind == "coordinates" else diagonal(points) / 2
@@ -80,7 +119,26 @@ def with_noise(points: Points, share: float, kind: NoiseKind = "coordinates", se
 
 
 def voxel_means(points: Points, side: float) -> Points:
-    """Return the mean of the points in every occupied cube of a grid, in the order of the cubes."""
+    """Return the mean of the points in every occupied cube of a grid, in the order of the cubes.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    side : float
+        Side of the cubes, in the same unit.
+
+    Returns
+    -------
+    (m, 3) float64
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.preprocess.conditioning import voxel_means
+    >>> voxel_means(np.array([[0, 0, 0], [0.5, 0, 0], [3.0, 0, 0]]), 1.0).tolist()
+    [[0.25, 0.0, 0.0], [3.0, 0.0, 0.0]]
+    """
     cells = np.floor((points - points.min(axis=0)) / side)
     _, inverse, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     sums = [np.bincount(inverse.ravel(), points[:, axis], minlength=len(counts)) for axis in range(3)]

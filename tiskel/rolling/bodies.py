@@ -47,6 +47,15 @@ class BodyTrajectory:
         Why the run ended.
     reason : str
         The same as a sentence, with the time.
+
+    Examples
+    --------
+    >>> from tiskel import RollParams, roll_body
+    >>> from tiskel.surfaces.analytic import Ellipsoid, Torus
+    >>> p = RollParams(omega=(0.5, 0.3, 0), start=(0.3, 1.0, 0.1, 0.1, 0.4), duration=1, rate=10)
+    >>> r = roll_body(Torus(5.0, 2.0), Ellipsoid(0.3, 0.4, 0.25), p)
+    >>> r.t.shape, r.contact.shape, r.orientation.shape, r.status.value
+    ((11,), (11, 3), (11, 4), 'finished')
     """
 
     t: Numbers

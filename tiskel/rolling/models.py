@@ -10,7 +10,7 @@ from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Pair, Triple, local_object_rates, object_rates
 from tiskel.slicing.fitted import FittedSurface
-from tiskel.surfaces.forms import Forms, forms_of
+from tiskel.surfaces.forms import Forms, forms_of, frame_at
 from tiskel.surfaces.jets import Jet, ParametricSurface, Scalar
 from tiskel.surfaces.tube import Tube
 
@@ -83,11 +83,6 @@ class LocalModel:
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
         frame, r = self.tube.at(u, v)
         return local_object_rates(r, frame.l, self.sigma, self.radius, omega, velocity)
-
-
-def frame_at(surface: ParametricSurface, sigma: float, u: float, v: float) -> Numbers:
-    """Return the contact frame (3, 3), x, y and z as columns."""
-    return np.asarray(np.array(forms_of(surface.jet(u, v), sigma)[:3], float).T)
 
 
 def straightened(tube: Tube, u: Scalar, v: Scalar) -> Jet:

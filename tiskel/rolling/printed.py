@@ -14,9 +14,8 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Numbers, Points
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Pair, Triple, object_rates
-from tiskel.rolling.models import frame_at
 from tiskel.slicing.fitted import FittedSurface
-from tiskel.surfaces.forms import Forms, forms_of
+from tiskel.surfaces.forms import Forms, forms_of, frame_at
 from tiskel.surfaces.jets import Scalar
 from tiskel.surfaces.tube import V_STOP, Tube
 

@@ -17,11 +17,31 @@ ROUNDS = 3  # of evening out the speed
 def fit_axis(
     places: Points, weights: Numbers, radius: float, intervals: int, *, closed: bool, v: Numbers | None = None
 ) -> Strip:
-    """Return the curve nearest to places (k, 3) in order, as smooth as cross-validation finds it has to be.
+    """Return the curve nearest to places in order, as smooth as cross-validation finds it has to be.
 
-    Smoother where its bends are sharper than the body is thick, as far as it stays inside. Without v the
-    places are in proportion to their distance, and a closed path repeats its
-    first place, which counts once.
+    Smoother where its bends are sharper than the body is thick, as far as it
+    stays inside.
+
+    Parameters
+    ----------
+    places : (k, 3) float64
+        Places that the curve follows, in the input's unit. Without ``v`` a closed path repeats its first place, which
+        counts once.
+    weights : (k,) float64
+        How much each place counts.
+    radius : float
+        How thick the body is, in the input's unit.
+    intervals : int
+        Of the spline.
+    closed : bool
+        Whether the curve is a loop.
+    v : (k,) float64, optional
+        The parameter of each place, from 0 to pi; without it in proportion to the length.
+
+    Returns
+    -------
+    Strip
+        The curve p(v), v from 0 to pi.
     """
     if v is None:
         v = arc_share(places) * V_STOP
@@ -38,20 +58,37 @@ def fit_axis(
 
 
 def arc_share(places: Points) -> Numbers:
-    """Return (k,) the share of the length of a polyline at its places."""
+    """Return (k,) the share of the length of a polyline (k, 3) at its vertices, from 0 to 1."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
     return np.asarray(along / max(along[-1], np.finfo(float).tiny))
 
 
 def sharpest(axis: Strip) -> float:
-    """Return the largest curvature of a curve."""
+    """Return the largest curvature of a curve, in 1 / length."""
     rows = axis.along(np.linspace(0, V_STOP, DENSE * axis.intervals))
     speed = np.linalg.norm(rows[:, 1], axis=1)
     return float((np.linalg.norm(np.cross(rows[:, 1], rows[:, 2]), axis=1) / speed**3).max())
 
 
 def evened(axis: Strip, intervals: int, start: float = 0.0, stop: float = V_STOP) -> Strip:
-    """Return the same curve, or its part from start to stop, on so many intervals, in proportion to its length."""
+    """Return a curve, or a part of it, with v in proportion to its length.
+
+    Parameters
+    ----------
+    axis : Strip
+        The curve.
+    intervals : int
+        Of the result.
+    start : float
+        v where the part begins.
+    stop : float
+        v where the part ends.
+
+    Returns
+    -------
+    Strip
+        The same places, v from 0 to pi.
+    """
     for _ in range(ROUNDS):
         v = np.linspace(start, stop, DENSE * max(intervals, axis.intervals) + 1)
         places = axis.along(v)[:, 0]

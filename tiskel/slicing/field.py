@@ -1,4 +1,8 @@
-"""The field m(v) that a frame is made of: y = (x x m)/|x x m|."""
+"""The field m(v) that a frame is made of: y = (x x m)/|x x m|.
+
+The rotation-minimising frame is that of W. Wang, B. Jüttler, D. Zheng, Y. Liu: Computation of rotation minimizing
+frames. ACM TOG 27(1), 2008.
+"""
 
 import numpy as np
 
@@ -19,6 +23,26 @@ def fit_field(
 
     A direction that comes near the tangent, and normals of what is straight
     somewhere, fall back to the rotation-minimising frame.
+
+    Parameters
+    ----------
+    axis : Strip
+        The skeleton curve.
+    m : (float, float, float) or str
+        A direction, "normal" or "rotation-minimising".
+    radius : float
+        How thick the body is, in the input's unit.
+    intervals : int
+        Of the spline of the field.
+
+    Returns
+    -------
+    field : Strip
+        m(v).
+    frame : str
+        "m", "normal" or "rotation-minimising".
+    note : str
+        Why it is not the frame asked for; empty where it is.
     """
     v = np.linspace(0, V_STOP, DENSE * intervals, endpoint=not axis.periodic)
     rows = axis.along(v)

@@ -10,6 +10,7 @@ from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import Strip
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.spacing import spacing_of
 from tiskel.params import SurfaceParams
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
@@ -17,15 +18,15 @@ from tiskel.slicing.field import fit_field
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.mesh import mesh_report
 from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
-from tiskel.slicing.rings import Ring, around, cut, frames_along, spacing_of
+from tiskel.slicing.rings import Ring, around, cut, frames_along
 from tiskel.slicing.sections import Case, Section, fit_section
 from tiskel.slicing.series import chosen_order, fit_sections, joined_series, without_unlike
 from tiskel.surfaces.tube import V_STOP, Tube
 
 TINY = 1e-300  # for quotients that may be of nothing
 LEAST_SLICES = 4  # fewer do not determine how a surface changes along its curve
-SLAB = 1.5  # spacings that a slab is thick to each side, at least
-LINKED, LINKED_RADII = 4.0, 0.3  # spacings, or radii, between neighbours of one ring
+SLAB = 0.75  # spacings that a slab is thick to each side, at least
+LINKED, LINKED_RADII = 2.0, 0.3  # spacings, or radii, between neighbours of one ring
 REACH = 3.0  # radii of the curve's nearest points: how far a section looks where points have no nodes
 INTERVALS = 4, 200  # of the splines; one for every two slices
 RECENTRINGS, CENTRE_ORDER = 2, 2  # rounds, and the order of the series whose first terms say where the middle is
@@ -42,8 +43,34 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
     """Fit a Fourier surface around every branch of a skeleton (Wen et al. 2025; see :mod:`tiskel.surfaces.tube`).
 
     Of a tiskel skeleton every slice sees the points of its branch only; of a
-    curve from elsewhere, with its ``cloud`` (n, 3), what is around it. Raises
-    TiskelError where no branch has a surface, with the reason of each.
+    curve from elsewhere, what is around it.
+
+    Parameters
+    ----------
+    skeleton : Skeleton or CurveGraph
+        The curve, in any unit.
+    params : SurfaceParams, optional
+        The settings.
+    cloud : (n, 3) float64, optional
+        The cloud around a curve from elsewhere, in its unit; a skeleton brings its own.
+
+    Returns
+    -------
+    Surfaces
+        One surface per branch, and the reason for every branch without.
+
+    Raises
+    ------
+    TiskelError
+        Where a curve comes without its cloud, or no branch has a surface; the message gives the reason of each.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_surface, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("banana"), ShapeParams(count=1000))
+    >>> surfaces = fit_surface(true, SurfaceParams(interval=0.05))
+    >>> len(surfaces), surfaces[0].order, surfaces[0].error < 0.01
+    (1, 3, True)
     """
     params = params or SurfaceParams()
     if isinstance(skeleton, Skeleton):
@@ -133,7 +160,7 @@ def _fitted(
 
 
 def places_of(count: int) -> Numbers:
-    """Return (count,) the places of slices: the middles of as many even parts of the curve."""
+    """Return (count,) v of the slices: the middles of as many even parts of the curve."""
     return np.asarray((np.arange(count) + 0.5) / count * V_STOP)
 
 

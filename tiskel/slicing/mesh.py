@@ -18,14 +18,34 @@ SAMPLES = 512  # of one section, for its area and perimeter
 
 @dataclass(frozen=True)
 class Mesh:
-    """vertices (p, 3), triangles (q, 3) int32, counter-clockwise seen from outside."""
+    """A triangle mesh.
+
+    Attributes
+    ----------
+    vertices : (p, 3) float64
+        The corners, in the input's unit.
+    triangles : (q, 3) int32
+        Their rows, counter-clockwise seen from outside.
+    """
 
     vertices: Points
     triangles: Indices
 
 
 def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
-    """Return the surface as triangles, closed around u, along v if the curve is a loop; caps close its ends."""
+    """Return a surface as triangles, closed around u, and along v if the curve is a loop.
+
+    Parameters
+    ----------
+    surface : FittedSurface
+        The surface.
+    caps : bool
+        Whether the ends of a surface that is no loop are closed by fans.
+
+    Returns
+    -------
+    Mesh
+    """
     closed = surface.tube.closed
     rows = PER_SLICE * len(surface.sections)
     u = np.arange(AROUND) / AROUND * 2 * np.pi
@@ -46,14 +66,14 @@ def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
 
 
 def joined_mesh(meshes: list[Mesh]) -> Mesh:
-    """Return several meshes as one."""
+    """Return several meshes as one, their vertices one after the other."""
     offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     triangles = [mesh.triangles + offset for mesh, offset in zip(meshes, offsets[:-1], strict=True)]
     return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles).astype(np.int32))
 
 
 def distances_to_mesh(points: Points, mesh: Mesh) -> Numbers:
-    """Return (p,) the distance of each point to the triangles around the vertex nearest to it."""
+    """Return (p,) the distance of each of points (p, 3) to the triangles around the vertex nearest to it."""
     nearest = cKDTree(mesh.vertices).query(points)[1]
     order = np.argsort(mesh.triangles.ravel(), kind="stable")
     starts = np.searchsorted(mesh.triangles.ravel()[order], np.arange(len(mesh.vertices) + 1))
@@ -81,13 +101,13 @@ def _to_triangles(points: Points, corners: Numbers) -> Numbers:
 
 
 def mesh_report(surface: FittedSurface) -> dict[str, float]:
-    """Return mean, 95 % and maximum of the distance from the points that were fitted to the surface."""
+    """Return mean, 95th percentile and maximum of the distance from fitted points to surface, in the input's unit."""
     off = distances_to_mesh(surface.cloud[surface.rows], surface_mesh(surface))
     return {"mean": float(off.mean()), "p95": float(np.quantile(off, 0.95)), "max": float(off.max())}
 
 
 def slice_table(surface: FittedSurface) -> list[dict[str, object]]:
-    """Return a row per slice: place, case, points, error; and of the surface there area, perimeter, radius, ellipse."""
+    """Return a row per slice: v, place, case, points, gap, error; of the surface area, perimeter, radius, ellipse."""
     return [_row(surface.name, number, surface.tube, section) for number, section in enumerate(surface.sections)]
 
 
@@ -103,7 +123,26 @@ def _row(branch: str, number: int, tube: Tube, section: Section) -> dict[str, ob
 
 
 def measures(series: Strip, v: float) -> tuple[float, float, float | None, float | None]:
-    """Return area and perimeter of the section at v, and the semi-axes of its ellipse (None where none fits)."""
+    """Return what the section of a surface at one place measures, in the input's unit.
+
+    Parameters
+    ----------
+    series : Strip
+        The Fourier coefficients of the surface along v.
+    v : float
+        The place, from 0 to pi.
+
+    Returns
+    -------
+    area : float
+        Area of the section.
+    perimeter : float
+        Its perimeter.
+    longer : float or None
+        The longer semi-axis of its ellipse; None where none fits.
+    shorter : float or None
+        The shorter semi-axis.
+    """
     u = np.arange(SAMPLES) / SAMPLES * 2 * np.pi
     r = radius_of([list(row) for row in series.at(v)], np.exp(1j * u))
     area = float((r.R**2).mean() * np.pi)

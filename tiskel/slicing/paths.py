@@ -15,21 +15,52 @@ LEAST_NODES = 3  # fewer have no direction to follow
 
 @dataclass(frozen=True)
 class Path:
-    """Nodes (k,) in order; a closed path repeats its first node."""
+    """A path along a curve.
+
+    Attributes
+    ----------
+    name : str
+        The number of its branch, or "longest".
+    nodes : (k,) int32
+        Its nodes in order; a closed path repeats its first.
+    """
 
     name: str
     nodes: Indices
 
     @property
     def closed(self) -> bool:
+        """Whether the path ends where it begins."""
         return len(self.nodes) > 1 and bool(self.nodes[0] == self.nodes[-1])
 
 
 def paths_of(curve: CurveGraph, branch: str) -> tuple[Path, ...]:
-    """Return the paths that a choice of branch names: "all", "longest" or a number.
+    """Return the paths that a choice of branch names.
 
-    A curve without edges is taken as one path in the order of its nodes. Raises
-    TiskelError where there is no such branch.
+    A curve without edges is taken as one path in the order of its nodes.
+
+    Parameters
+    ----------
+    curve : CurveGraph
+        The curve.
+    branch : str
+        "all", "longest" or a number.
+
+    Returns
+    -------
+    tuple of Path
+
+    Raises
+    ------
+    TiskelError
+        Where the curve has no nodes, or no branch of this number.
+
+    Examples
+    --------
+    >>> from tiskel import shape_graph
+    >>> from tiskel.slicing.paths import paths_of
+    >>> [path.name for path in paths_of(shape_graph("y"), "all")]
+    ['0', '1', '2']
     """
     if len(curve.nodes) == 0:
         raise TiskelError("the skeleton has no nodes; run tiskel skeleton again")
@@ -47,7 +78,7 @@ def paths_of(curve: CurveGraph, branch: str) -> tuple[Path, ...]:
 
 
 def longest_path(curve: CurveGraph) -> Indices:
-    """Return the longest of the shortest ways between any two ends (k,); of loops alone, the longest branch."""
+    """Return (k,) the nodes of the longest shortest way between two ends; of loops alone, the longest branch."""
     count, ends = len(curve.nodes), np.flatnonzero(curve.degrees == 1)
     if len(ends) < 2:
         return max(curve.branches, key=lambda path: _length(curve, path))

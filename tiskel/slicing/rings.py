@@ -1,4 +1,4 @@
-"""The ring of points that a slice sees around the skeleton curve; other limbs in its plane are left out."""
+"""The ring of points that a slice sees around the skeleton curve; other branches in its plane are left out."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,19 @@ PROJECTIONS = 3  # Newton steps to the plane through a point
 
 @dataclass(frozen=True)
 class Ring:
-    """The points of one section: rows (k,) in the cloud, angle u, place v on the curve and distance r from it."""
+    """The points of one section, in cylinder coordinates about the skeleton curve.
+
+    Attributes
+    ----------
+    rows : (k,) int32
+        Their rows in the cloud.
+    u : (k,) float64
+        Their angles about the curve, in radians.
+    v : (k,) float64
+        Their places along the curve, from 0 to pi.
+    r : (k,) float64
+        Their distances from the curve, in the input's unit.
+    """
 
     rows: Indices
     u: Numbers
@@ -27,7 +39,7 @@ class Ring:
 
 
 def frames_along(axis: Strip, field: Strip, v: Numbers) -> Moving:
-    """Return the moving frame at places (k,); its vectors are tuples of arrays (k,)."""
+    """Return the moving frame of an axis and its field at places v (k,); its vectors are tuples of arrays (k,)."""
     p, m = (list(map(tuple, np.moveaxis(strip.along(v), 0, 2))) for strip in (axis, field))
     return moving_frame(p, m)
 
@@ -35,9 +47,29 @@ def frames_along(axis: Strip, field: Strip, v: Numbers) -> Moving:
 def cut(
     points: Points, axis: Strip, field: Strip, v: Numbers, half: float, reach: Numbers, link: float
 ) -> list[Indices]:  # fmt: skip
-    """Return for each slice at v (s,) the rows of the ring of points around the curve, and no others.
+    """Return the ring of points around the curve in each slice.
 
-    Points no further apart than ``link`` hang together.
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The points, in the input's unit.
+    axis : Strip
+        The skeleton curve.
+    field : Strip
+        The field m(v) of its frame.
+    v : (s,) float64
+        The places of the slices, from 0 to pi.
+    half : float
+        Half the thickness of a slice, in the input's unit.
+    reach : (s,) float64
+        How far from the curve each slice looks, in the input's unit; may be infinite.
+    link : float
+        Points no further apart hang together, in the input's unit.
+
+    Returns
+    -------
+    list of (k,) int32
+        The rows of each ring.
     """
     from tiskel.kernels.sections import section_counts, section_points
 
@@ -55,16 +87,23 @@ def cut(
     return found
 
 
-def spacing_of(points: Points) -> float:
-    """Return the median distance to the nearest other point."""
-    return float(np.median(cKDTree(points).query(points, k=2)[0][:, 1])) if len(points) > 1 else 0.0
-
-
 def ring_of(plane: Numbers, link: float) -> Indices:
-    """Return which points (k, 2) of a section, its centre at the origin, are the ring around the centre.
+    """Return which points of a section are the ring around its centre.
 
     Of the parts that hang together, the one that is nearest in most directions,
     and those as far away that are nearest where it has a gap.
+
+    Parameters
+    ----------
+    plane : (k, 2) float64
+        The points of the section; its centre is the origin.
+    link : float
+        Points no further apart hang together, in the same unit.
+
+    Returns
+    -------
+    (r,) int32
+        Rows of ``plane``.
     """
     if len(plane) == 0:
         return np.zeros(0, np.int32)
@@ -90,7 +129,22 @@ def ring_of(plane: Numbers, link: float) -> Indices:
 def around(points: Points, rows: Indices, axis: Strip, field: Strip, start: Numbers) -> Ring:
     """Return where some points are about the curve: in the planes across it that go through them.
 
-    ``start`` (k,) is near their v.
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The points, in the input's unit.
+    rows : (k,) int32
+        The rows of those that are asked for.
+    axis : Strip
+        The skeleton curve.
+    field : Strip
+        The field m(v) of its frame.
+    start : (k,) float64
+        A v near that of each.
+
+    Returns
+    -------
+    Ring
     """
     v, own = start.copy(), points[rows]
     for _ in range(PROJECTIONS):

@@ -33,10 +33,18 @@ class Section:
 
     Attributes
     ----------
-    v : its place on the curve; case : what became of it.
-    series : a0, then a_i, b_i in pairs, (2 N + 1,); empty unless fitted.
-    points : how many the ring has; gap : the largest angle without one, in radians.
-    error : RMS of the misfit over the mean radius, NaN unless fitted.
+    v : float
+        Its place on the curve, from 0 to pi.
+    case : Case
+        What became of it.
+    series : (2 N + 1,) float64
+        a0, then a_i and b_i in pairs, in the input's unit; empty unless fitted.
+    points : int
+        How many the ring has.
+    gap : float
+        The largest angle without a point, in radians.
+    error : float
+        RMS of the misfit over the mean radius; NaN unless fitted.
     """
 
     v: float
@@ -48,7 +56,23 @@ class Section:
 
 
 def fit_section(v: float, ring: Ring, order: int, params: SurfaceParams) -> Section:
-    """Return the series of so high an order through a ring, or the reason why there is none."""
+    """Return the series through a ring, or the reason why there is none.
+
+    Parameters
+    ----------
+    v : float
+        The place of the slice, from 0 to pi.
+    ring : Ring
+        Its points.
+    order : int
+        The order N of the series.
+    params : SurfaceParams
+        ``least_points``, ``gap`` and ``uneven`` count.
+
+    Returns
+    -------
+    Section
+    """
     none = Section(v, Case.FEW, np.zeros(0), len(ring.u), largest_gap(ring.u), np.nan)
     if len(ring.u) < max(params.least_points, 2 * order + 1 + SLOPES + 1):
         return none
@@ -68,32 +92,32 @@ def fit_section(v: float, ring: Ring, order: int, params: SurfaceParams) -> Sect
 
 
 def largest_gap(u: Numbers) -> float:
-    """Return the largest angle between neighbours in angle, 2 pi where there are fewer than two."""
+    """Return the largest angle between neighbours among angles u (k,), in radians; 2 pi for fewer than two."""
     if len(u) < 2:
         return 2 * np.pi
     return float(gaps_of(u)[1].max())
 
 
 def gaps_of(u: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the angles (k,) in order, and how far it is from each to the next, around the circle."""
+    """Return the angles u (k,) in order, and how far it is from each to the next around the circle, in radians."""
     ordered = np.sort(np.mod(u, 2 * np.pi))
     return ordered, np.diff(np.append(ordered, ordered[0] + 2 * np.pi))
 
 
 def waves_of(u: Numbers, order: int) -> Numbers:
-    """Return (k, 2 N): sin u, cos u, sin 2u, cos 2u ..."""
+    """Return (k, 2 N) for angles u (k,): sin u, cos u, sin 2u, cos 2u ... up to order N."""
     i = np.arange(1, order + 1)
     return np.stack([np.sin(u[:, None] * i), np.cos(u[:, None] * i)], axis=2).reshape(len(u), -1)
 
 
 def basis_of(ring: Ring, v: float, order: int) -> Numbers:
-    """Return (k, 2 N + 4): 1, sin u, cos u, sin 2u ..., and three columns that grow along the curve."""
+    """Return (k, 2 N + 4) the columns of the fit: 1, sin u, cos u, sin 2u ..., and three that grow along the curve."""
     series = np.concatenate([np.ones((len(ring.u), 1)), waves_of(ring.u, order)], axis=1)
     return np.concatenate([series, (ring.v - v)[:, None] * series[:, :SLOPES]], axis=1)
 
 
 def held_in_gaps(u: Numbers, order: int) -> Numbers:
-    """Return (2 N + 1, 2 N + 1) the roughness of a series where there are no points: the mean square of R_uu there.
+    """Return (2 N + 1, 2 N + 1) the roughness of a series in the gaps of angles u (k,): the mean square of R_uu there.
 
     Points say nothing of waves that fit into a gap between them; this does.
     """
@@ -109,14 +133,28 @@ def held_in_gaps(u: Numbers, order: int) -> Numbers:
 
 
 def runs_away(solution: Numbers, r: Numbers, order: int) -> bool:
-    """Tell whether a series is far from all distances it was fitted to: it fills a gap with what is not there."""
+    """Tell whether a series is far from all distances r (k,) that it was fitted to, as happens in a gap."""
     u = np.linspace(0, 2 * np.pi, 20 * order, endpoint=False)
     fitted = solution[0] + waves_of(u, order) @ solution[1 : 2 * order + 1]
     return bool(fitted.max() > AWAY * r.max() or fitted.min() < r.min() / AWAY)
 
 
 def normal_matrix(basis: Numbers, weights: Numbers, held: Numbers) -> Numbers:
-    """Return the matrix of weighted least squares, with what holds the coefficients that no point determines."""
+    """Return the matrix of weighted least squares, with what holds the coefficients that no point determines.
+
+    Parameters
+    ----------
+    basis : (k, 2 N + 4) float64
+        The columns of the fit.
+    weights : (k,) float64
+        How much each point counts.
+    held : (2 N + 1, 2 N + 1) float64
+        The roughness in gaps.
+
+    Returns
+    -------
+    (2 N + 4, 2 N + 4) float64
+    """
     order, count = len(held) // 2, len(held)
     ridge = np.concatenate([[0.0], np.repeat(np.arange(1.0, order + 1) ** 4, 2), np.zeros(SLOPES)])
     ridge[-SLOPES:] = 1e-6 * (basis[:, -SLOPES:] ** 2).sum(axis=0) + 1e-12
@@ -127,12 +165,26 @@ def normal_matrix(basis: Numbers, weights: Numbers, held: Numbers) -> Numbers:
 
 
 def solved(basis: Numbers, r: Numbers, weights: Numbers, held: Numbers) -> Numbers:
-    """Return the coefficients of weighted least squares."""
+    """Return (2 N + 4,) the coefficients that fit distances r (k,); other arguments as in :func:`normal_matrix`."""
     return np.linalg.solve(normal_matrix(basis, weights, held), basis.T @ (weights * r))
 
 
 def robust_weights(ring: Ring, basis: Numbers, order: int) -> Numbers:
-    """Return (k,) the weights of points after Huber: 1, or less for those that are far off."""
+    """Return (k,) the weights of the points of a ring: 1, or less for those that are far off the series.
+
+    Parameters
+    ----------
+    ring : Ring
+        The points.
+    basis : (k, 2 N + 4) float64
+        The columns of the fit.
+    order : int
+        The order N of the series.
+
+    References
+    ----------
+    P. Huber: Robust estimation of a location parameter. Annals of Mathematical Statistics 35(1), 1964.
+    """
     r, weights, held = ring.r, np.ones(len(ring.r)), held_in_gaps(ring.u, order)
     for _ in range(ROUNDS):
         misfit = np.abs(r - basis @ solved(basis, r, weights, held))
@@ -142,7 +194,17 @@ def robust_weights(ring: Ring, basis: Numbers, order: int) -> Numbers:
 
 
 def left_out_error(v: float, ring: Ring, order: int) -> float:
-    """Return the mean square of what each point is off the series through the others, over the mean radius."""
+    """Return the mean square distance of each point from the series through the others, in squared mean radii.
+
+    Parameters
+    ----------
+    v : float
+        The place of the slice, from 0 to pi.
+    ring : Ring
+        Its points.
+    order : int
+        The order of the series.
+    """
     basis = basis_of(ring, v, order)
     weights = robust_weights(ring, basis, order)
     held = held_in_gaps(ring.u, order)

@@ -17,7 +17,15 @@ ENDS = (0, 1, 0.0), (-1, -2, V_STOP)  # the sections that say where the surface 
 
 
 def chosen_order(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> int:
-    """Return the order up to which points that are left out are met better and better, in the mean of all slices."""
+    """Return the order of the series up to which points that are left out are met better and better.
+
+    Parameters
+    ----------
+    pairs : list of (float, Ring)
+        v of every slice, and its points.
+    params : SurfaceParams
+        ``least_order`` and ``most_order`` count.
+    """
     tried = [fit_section(v, ring, params.least_order, params) for v, ring in pairs]
     good = [pair for pair, section in zip(pairs, tried, strict=True) if section.case is Case.FITTED]
     judged = good[:: -(-len(good) // JUDGED) or 1]
@@ -28,14 +36,28 @@ def chosen_order(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> int:
 
 
 def fit_sections(pairs: list[tuple[float, Ring]], order: int, params: SurfaceParams) -> tuple[Section, ...]:
-    """Return the sections, all of one order, or each of its own, as published."""
+    """Return the sections, all of one order, or each of its own, as published.
+
+    Parameters
+    ----------
+    pairs : list of (float, Ring)
+        v of every slice, and its points.
+    order : int
+        The order of the series, unless the rule is "published".
+    params : SurfaceParams
+        The settings.
+
+    Returns
+    -------
+    tuple of Section
+    """
     if params.order_rule == "published":
         return without_unlike(tuple(_published(v, ring, params) for v, ring in pairs))
     return without_unlike(tuple(fit_section(v, ring, order, params) for v, ring in pairs))
 
 
 def without_unlike(sections: tuple[Section, ...]) -> tuple[Section, ...]:
-    """Reject sections that are off their points far more than most, as those through joints are."""
+    """Reject sections that are off their points far more than most, as those through junctions are."""
     errors = np.array([section.error for section in sections if section.case is Case.FITTED])
     most = max(UNLIKE * float(np.median(errors)), LEAST_UNLIKE) if len(errors) else np.inf
     return tuple(
@@ -59,10 +81,24 @@ def _published(v: float, ring: Ring, params: SurfaceParams) -> Section:
 
 
 def joined_series(sections: tuple[Section, ...], intervals: int, closed: bool) -> Strip:
-    """Return the coefficients as functions of v.
+    """Return the coefficients of the series as functions of v.
 
     Straight, though lightly held, over rejected slices, and straight on to the
     ends, half a slice away: a spline alone would run off where nothing holds it.
+
+    Parameters
+    ----------
+    sections : tuple of Section
+        Every slice, fitted or rejected; some are fitted.
+    intervals : int
+        Of the spline.
+    closed : bool
+        Whether the skeleton curve is a loop.
+
+    Returns
+    -------
+    Strip
+        Columns a0, a1, b1, a2, b2, ..., in the input's unit; v from 0 to pi.
     """
     good = [section for section in sections if section.case is Case.FITTED]
     series = np.zeros((len(good), max(len(section.series) for section in good)))

@@ -10,7 +10,10 @@ contact has the skeleton's point in it.
 
 from typing import NamedTuple
 
-from tiskel.surfaces.jets import Jet, Scalar, Vector, cross, dot, scaled
+import numpy as np
+
+from tiskel.arrays import Numbers
+from tiskel.surfaces.jets import Jet, ParametricSurface, Scalar, Vector, cross, dot, scaled
 
 Form = tuple[tuple[Scalar, Scalar], tuple[Scalar, Scalar]]
 
@@ -76,3 +79,8 @@ def principal_curvatures(forms: Forms) -> tuple[Scalar, Scalar]:
     xx, xy, yy = curvature(forms)
     mean, spread = (xx + yy) / 2, (((xx - yy) / 2) ** 2 + xy**2) ** 0.5
     return mean - spread, mean + spread
+
+
+def frame_at(surface: ParametricSurface, sigma: float, u: float, v: float) -> Numbers:
+    """Return the contact frame (3, 3), x, y and z as columns."""
+    return np.asarray(np.array(forms_of(surface.jet(u, v), sigma)[:3], float).T)

@@ -28,7 +28,22 @@ WRITTEN = tuple(suffix for suffix, kind in BY_SUFFIX.items() if kind.write)  #: 
 
 
 def format_of(name: str, data: bytes, by_content: bool = False) -> Format:
-    """Return the type of a file by its suffix, or by its first bytes (text where nothing else claims them)."""
+    """Return the type of a file.
+
+    Parameters
+    ----------
+    name : str
+        Its name; the suffix says of which type it is.
+    data : bytes
+        What it holds.
+    by_content : bool
+        Whether the first bytes say it instead: text where no type claims them.
+
+    Raises
+    ------
+    TiskelError
+        For an unknown suffix.
+    """
     if by_content:
         return next((kind for kind in FORMATS if kind.sniff(data)), text.XYZ)
     suffix = PurePath(name).suffix.lower()
@@ -39,7 +54,13 @@ def format_of(name: str, data: bytes, by_content: bool = False) -> Format:
 
 
 def writer_of(suffix: str) -> Callable[[Points], bytes]:
-    """Return what writes the type that a suffix (with its dot) asks for."""
+    """Return the function from points (n, 3) to bytes that writes the type of a suffix (with its dot).
+
+    Raises
+    ------
+    TiskelError
+        Where clouds are not written in this type.
+    """
     kind = BY_SUFFIX.get(suffix.lower())
     if kind is None or kind.write is None:
         asked = repr(suffix) if suffix else "'a file without a suffix'"

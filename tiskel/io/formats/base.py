@@ -1,4 +1,4 @@
-"""What a file type is to the registry, and what reading one gives."""
+"""What a file type must give to the registry, and what reading a file gives."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -20,10 +20,14 @@ class Parsed:
 
     Attributes
     ----------
-    points : (n, 3) float64, in the file's units; rows may be NaN or Inf. The corners, where there are faces.
-    faces : (m, 3) int32, triangles; none for a cloud.
-    properties : further columns of the file by name, (n,) each.
-    warnings : what had to be decided while reading.
+    points : (n, 3) float64
+        In the file's units; rows may be NaN or Inf. The corners, where there are faces.
+    faces : (m, 3) int32
+        The corners of triangles; no row for a cloud.
+    properties : mapping of str to (n,) array
+        Further columns of the file by name.
+    warnings : tuple of str
+        What had to be decided while reading.
     """
 
     points: Points
@@ -49,11 +53,16 @@ class Format:
 
     Attributes
     ----------
-    name : as messages call it.
-    suffixes : lower case, with the dot.
-    read : bytes and the file's name (for messages) to what they hold; raises TiskelError.
-    write : points to bytes; None where the type is only read.
-    sniff : whether bytes are of this type; asked where there is no suffix, of standard input.
+    name : str
+        As messages call it.
+    suffixes : tuple of str
+        In lower case, with the dot.
+    read : callable
+        From the bytes and the file's name (for messages) to a Parsed; raises TiskelError.
+    write : callable or None
+        From points (n, 3) to bytes; None where the type is only read.
+    sniff : callable
+        From the bytes to whether they are of this type; asked where there is no suffix, of standard input.
     """
 
     name: str

@@ -12,15 +12,31 @@ from tiskel.io.formats.base import NO_FACES
 
 
 def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any], count: int, name: str) -> Indices:
-    """Return triangles (m, 3) that fan out from the first corner of each polygon, in the order of the polygons.
+    """Return polygons as triangles that fan out from their first corners, in the order of the polygons.
 
     Parameters
     ----------
-    polygons : corners of each, counted from 0; fewer than three make no triangle.
-    count : corners that the file has.
-    name : of the file, for messages.
+    polygons : sequence of sequences of int
+        The corners of each, counted from 0; fewer than three make no triangle.
+    count : int
+        Corners that the file has.
+    name : str
+        The file's name, for messages.
 
-    Raises TiskelError where a polygon names a corner that is not there.
+    Returns
+    -------
+    (m, 3) int32
+
+    Raises
+    ------
+    TiskelError
+        Where a polygon names a corner that is not there.
+
+    Examples
+    --------
+    >>> from tiskel.io.formats.faces import fans
+    >>> fans([[0, 1, 2, 3]], 4, "square.off").tolist()
+    [[0, 1, 2], [0, 2, 3]]
     """
     if len(polygons) == 0:
         return NO_FACES

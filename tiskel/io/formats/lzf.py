@@ -6,7 +6,20 @@ LONG = 7 + SHORTEST  #: length of a copy at which one more byte of length follow
 
 
 def decompress(data: bytes, size: int) -> bytes:
-    """Return the bytes that were packed; raise ValueError where they are not of this size or refer to nothing."""
+    """Return the bytes that were packed.
+
+    Parameters
+    ----------
+    data : bytes
+        The packed bytes.
+    size : int
+        How many they become.
+
+    Raises
+    ------
+    ValueError
+        Where they become more or fewer, or refer to bytes that are not there.
+    """
     out = bytearray()
     at = 0
     while at < len(data) and len(out) <= size:

@@ -16,8 +16,20 @@ NUMBERS = "fiu"  #: kinds of dtype that are coordinates: floating, signed and un
 def read(data: bytes, name: str) -> Parsed:
     """Return the cloud of an NPY file, or of the array "points" or the only array of an NPZ file.
 
-    An array is (n, 3), or (n, 4 and more) with x, y, z first, or of (n,) records with fields x, y, z; leading axes of
-    length 1 are dropped. Raises TiskelError for anything else, in particular for (3, n).
+    An array is (n, 3), or (n, 4 and more) with x, y, z first, or of (n,) records
+    with fields x, y, z; leading axes of length 1 are dropped.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        For anything else, in particular for (3, n).
     """
     array = _load(data, name)
     while array.ndim > (1 if array.dtype.names else 2) and array.shape[0] == 1:
@@ -26,7 +38,7 @@ def read(data: bytes, name: str) -> Parsed:
 
 
 def write(points: Points) -> bytes:
-    """Return NPY."""
+    """Return points (n, 3) as NPY."""
     out = io.BytesIO()
     np.save(out, np.ascontiguousarray(points))
     return out.getvalue()

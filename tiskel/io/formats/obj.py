@@ -14,7 +14,18 @@ def read(data: bytes, name: str) -> Parsed:
     """Return vertices and triangles; all other statements are left out.
 
     A face counts vertices from 1, or backwards from the last one before it.
-    Raises TiskelError where a vertex has no three numbers or a face names none.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where a vertex has no three numbers, or a face names no vertex or one that is not there.
     """
     vertices: list[str] = []
     polygons: list[list[int]] = []

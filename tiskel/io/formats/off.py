@@ -14,7 +14,20 @@ MARK = re.compile(r"(ST)?C?N?OFF")  #: texture, colours and normals may follow t
 
 
 def read(data: bytes, name: str) -> Parsed:
-    """Return vertices and triangles; raise TiskelError where rows and header do not agree."""
+    """Return vertices and triangles.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is no OFF, or rows and header do not agree.
+    """
     lines = [line.partition("#")[0].strip() for line in data.decode("latin-1").splitlines()]
     rows = [line for line in lines if line]
     mark = MARK.match(rows[0]) if rows else None

@@ -13,7 +13,13 @@ SYSTEM_PACKAGES = "libgl1 libegl1 libx11-6 libgomp1 libusb-1.0-0"
 
 
 def open3d() -> Any:
-    """Return the module, or raise with what a bare server lacks."""
+    """Return the module.
+
+    Raises
+    ------
+    TiskelError
+        Where it cannot be imported; the message says what a bare server lacks.
+    """
     try:
         import open3d as module
     except (ImportError, OSError) as error:
@@ -26,7 +32,22 @@ def open3d() -> Any:
 
 
 def read_mesh(data: bytes, name: str, suffix: str) -> Parsed:
-    """Return the vertices and triangles of a mesh file's bytes; the suffix (with its dot) says which kind it is."""
+    """Return the vertices and triangles of a mesh file.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+    suffix : str
+        With its dot: which kind it is.
+
+    Raises
+    ------
+    TiskelError
+        Where Open3D is missing, cannot read the file, or finds no points.
+    """
     module = open3d()
     with tempfile.TemporaryDirectory() as folder:  # Open3D reads files only
         path = Path(folder) / f"mesh{suffix}"

@@ -24,10 +24,14 @@ class Header:
 
     Attributes
     ----------
-    fields : of a row: a name, a type and how many numbers of it.
-    count : rows.
-    layout : one of LAYOUTS.
-    start : byte at which the rows begin.
+    fields : tuple of (str, str, int)
+        The name, the type and the number of values of every field of a row.
+    count : int
+        Rows.
+    layout : str
+        "ascii", "binary" or "binary_compressed".
+    start : int
+        Byte at which the rows begin.
     """
 
     fields: tuple[tuple[str, str, int], ...]
@@ -37,19 +41,29 @@ class Header:
 
     @property
     def row_bytes(self) -> int:
-        """Bytes of a row that is not text."""
+        """The number of bytes of a row that is not text."""
         return sum(many * int(kind[1:]) for _, kind, many in self.fields)
 
     @property
     def width(self) -> int:
-        """Numbers in a row."""
+        """The number of values in a row."""
         return sum(many for _, _, many in self.fields)
 
 
 def read(data: bytes, name: str) -> Parsed:
     """Return the points and the other fields of one number; the viewpoint is not applied.
 
-    Raises TiskelError where the header contradicts itself or the rows are not as many as it promises.
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the header contradicts itself or the rows are not as many as it promises.
     """
     header = _header(data, name)
     if header.layout not in LAYOUTS:

@@ -16,7 +16,20 @@ NAN_OF_WINDOWS = re.compile(rb"[+-]?nan\([a-z]+\)")
 
 
 def read(data: bytes, name: str) -> Parsed:
-    """Return points, triangles and further columns; raise TiskelError where the file is damaged or has no x, y, z."""
+    """Return points, triangles and further columns.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is damaged or has no x, y, z.
+    """
     file = ply.parse(_tidy(data), name)
     holder = "cloud" if any(c.startswith("tiskel ") for c in file.comments) and "cloud" in file else "vertex"
     if holder not in file:
@@ -30,7 +43,7 @@ def read(data: bytes, name: str) -> Parsed:
 
 
 def write(points: Points) -> bytes:
-    """Return binary PLY."""
+    """Return points (n, 3) as binary PLY."""
     return ply.dump([ply.element("vertex", ply.xyz(points))], "cloud", {})
 
 

@@ -11,7 +11,20 @@ VERTEX = re.compile(rb"^[ \t]*vertex(?:[ \t]+[-+.\deE]+){3}[ \t\r]*$", re.MULTIL
 
 
 def read(data: bytes, name: str) -> Parsed:
-    """Return vertices and triangles; raise TiskelError where the file is cut short or damaged."""
+    """Return vertices and triangles.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is cut short or damaged, or Open3D is missing.
+    """
     if not (_whole_binary(data) or _whole_text(data)):
         raise TiskelError(f"{name} is no whole STL file, neither binary nor text; export it again")
     return read_mesh(data, name, ".stl")

@@ -36,7 +36,7 @@ def separator_of(rows: Sequence[str]) -> str | None:
 
 
 def cells(row: str, separator: str | None) -> list[str]:
-    """Return the cells of one row without their quotes."""
+    """Return the cells of one row without their quotes; without a separator (None) white space separates."""
     if '"' not in row:
         return [cell.strip().strip("'") for cell in row.split(separator)]
     try:
@@ -47,7 +47,20 @@ def cells(row: str, separator: str | None) -> list[str]:
 
 
 def unquoted(rows: Sequence[str], name: str) -> list[str]:
-    """Return rows of quoted cells as rows with semicolons between bare cells."""
+    """Return rows of quoted cells as rows with semicolons between bare cells.
+
+    Parameters
+    ----------
+    rows : sequence of str
+        Rows of a table; the last tells the separator.
+    name : str
+        The file's name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the quotes do not match.
+    """
     bare = re.sub(r'"[^"]*"', '""', rows[-1])
     separator = next((sign for sign in ";\t," if sign in bare), " ")
     try:
@@ -60,14 +73,23 @@ def unquoted(rows: Sequence[str], name: str) -> list[str]:
 def with_points(rows: Sequence[str], separator: str | None, headed: bool, name: str) -> Sequence[str]:
     """Return the rows with decimal points, exponents as C has them, and plain NaN.
 
+    A comma is the decimal sign where something else separates.
+
     Parameters
     ----------
-    rows : of numbers, without a header.
-    separator : of their columns, None for white space.
-    headed : whether every column has a name.
-    name : of the file, for messages.
+    rows : sequence of str
+        Rows of numbers, without a header.
+    separator : str or None
+        The separator of their columns, None for white space.
+    headed : bool
+        Whether every column has a name.
+    name : str
+        The file's name, for messages.
 
-    A comma is the decimal sign where something else separates. Raises TiskelError where it cannot be told.
+    Raises
+    ------
+    TiskelError
+        Where the decimal sign cannot be told.
     """
     text = "\n".join(rows)
     changed = text

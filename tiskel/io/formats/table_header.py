@@ -16,13 +16,16 @@ INDEX = re.compile(r"|unnamed: ?\d+|index|idx|id|#")  #: names of a column that 
 
 @dataclass(frozen=True)
 class Columns:
-    """Which columns are read.
+    """Which columns of a table are read, counted from 0.
 
     Attributes
     ----------
-    axes : of x, y and z.
-    others : name and column of the rest.
-    warnings : what had to be decided.
+    axes : (int, int, int)
+        The columns of x, y and z.
+    others : dict of str to int
+        The other columns by name.
+    warnings : tuple of str
+        What had to be decided.
     """
 
     axes: tuple[int, int, int] = (0, 1, 2)
@@ -35,11 +38,26 @@ def columns_of(names: Sequence[str], name: str) -> Columns:
 
     Parameters
     ----------
-    names : of all columns. x, y and z in either case count, alone, with a unit (X(m), x_mm), or as ParaView writes
-        them (Points:0); where there are three columns without these names, they are taken in order, and it is said.
-    name : of the file, for messages.
+    names : sequence of str
+        Of all columns. x, y and z in either case count, alone, with a unit (X(m), x_mm), or as ParaView writes them
+        (Points:0); where there are three columns without these names, they are taken in order, with a warning.
+    name : str
+        The file's name, for messages.
 
-    Raises TiskelError where more than three columns have none of these names.
+    Returns
+    -------
+    Columns
+
+    Raises
+    ------
+    TiskelError
+        Where neither the names nor the number of the columns say which are x, y and z.
+
+    Examples
+    --------
+    >>> from tiskel.io.formats.table_header import columns_of
+    >>> columns_of(["id", "X(m)", "Y(m)", "Z(m)"], "c.csv").axes
+    (1, 2, 3)
     """
     axes = named(names)
     if axes is not None:
@@ -53,7 +71,7 @@ def columns_of(names: Sequence[str], name: str) -> Columns:
 
 
 def named(names: Sequence[str]) -> tuple[int, int, int] | None:
-    """Return the columns of x, y and z; None where one of them is missing or there twice in the plainest spelling."""
+    """Return the columns of x, y and z by name; None where one is missing, or there twice in the plainest spelling."""
     spellings: tuple[Callable[[str], str], ...] = (str.lower, _plain, _paraview)
     for spelling in spellings:
         spelt = [spelling(name) for name in names]

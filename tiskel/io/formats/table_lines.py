@@ -17,11 +17,16 @@ class Table:
 
     Attributes
     ----------
-    name : of the file.
-    text : all of it.
-    rows : neither blank nor comments, without white space around them; at least one.
-    comments : lines before the first row.
-    skipped : rows of the file before the first of these.
+    name : str
+        The file's name.
+    text : str
+        All of the file.
+    rows : sequence of str
+        Rows that are neither blank nor comments, without white space around them; at least one.
+    comments : tuple of str
+        Lines before the first row.
+    skipped : int
+        Rows of the file before the first of these.
     """
 
     name: str
@@ -31,21 +36,47 @@ class Table:
     skipped: int = 0
 
     def without_first(self) -> "Table":
-        """Return the table that follows the first row; raise where nothing does."""
+        """Return the table that follows the first row.
+
+        Raises
+        ------
+        TiskelError
+            Where nothing follows.
+        """
         if len(self.rows) == 1:
             raise TiskelError(f"{self.name} holds no points; check how it was made")
         return replace(self, rows=self.rows[1:], skipped=self.skipped + 1)
 
     def error(self, row: int, found: str, needed: str) -> TiskelError:
-        """Return an error that names the line of a row, what is in it and what to do."""
+        """Return an error about a row.
+
+        Parameters
+        ----------
+        row : int
+            The row, counted from 0; the message names its line in the file.
+        found : str
+            What is in it.
+        needed : str
+            What to do.
+        """
         lines = [i for i, line in enumerate(self.text.splitlines(), 1) if _is_row(line.strip())]
         return TiskelError(f"{self.name}: line {lines[self.skipped + row]} has {found}; {needed}")
 
 
 def table_of(data: bytes, name: str) -> Table:
-    """Return the rows of a text file in UTF-8 or UTF-16 (by its mark), after a first row that only counts them.
+    """Return the rows of a text file, after a first row that only counts them.
 
-    Raises TiskelError where it is not text, holds no row, or the count is wrong.
+    Parameters
+    ----------
+    data : bytes
+        Text in UTF-8, or in UTF-16 with its mark.
+    name : str
+        The file's name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where it is not text, holds no row, or the count is wrong.
     """
     text = _decoded(data, name)
     lines = list(map(str.strip, text.splitlines()))

@@ -24,10 +24,18 @@ def read(data: bytes, name: str) -> Parsed:
     row of one whole number counts the rows, as PTS has it, and must be right.
     A header may stand in the first row or in a comment (#, //) before it.
 
-    Raises TiskelError where numbers could be read in two ways: whole numbers
-    in pairs between commas, more than three columns of other names, a first
-    column without a name that counts the rows; and where a row has other
-    columns than the first.
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where numbers could be read in two ways: whole numbers in pairs between commas, more than three columns of other
+        names, a first column without a name that counts the rows; and where a row has other columns than the first.
     """
     table, separator = _separated(table_of(data, name))
     names, table = _header(table, separator)
@@ -155,7 +163,15 @@ def _counts(column: Numbers) -> bool:
 
 
 def write(points: Points, separator: str = " ") -> bytes:
-    """Return one point per line, with as many digits as it takes to read the same numbers back."""
+    """Return points (n, 3), one per line, with as many digits as it takes to read the same numbers back.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud.
+    separator : str
+        What stands between the coordinates.
+    """
     return "".join(separator.join(map(repr, row)) + "\n" for row in points.tolist()).encode()
 
 

@@ -66,7 +66,7 @@ def write_contraction(
 
 
 def dump_contraction(c: Contraction, source: dict[str, str] | None = None, *, history: bool = False) -> bytes:
-    """Return the bytes of a stage file: the same bytes for the same contraction."""
+    """Return the bytes of a stage file, the same for the same contraction; see :func:`write_contraction`."""
     vertex: dict[str, Any] = {**ply.xyz(c.points), **ply.xyz(c.origin, ORIGIN), "row": c.rows}
     if c.rings is not None:
         vertex |= {"ring_end": np.cumsum(c.rings.sizes, dtype=np.int32), "closed": c.rings.closed.astype(np.uint8)}
@@ -94,9 +94,21 @@ def dump_contraction(c: Contraction, source: dict[str, str] | None = None, *, hi
 
 
 def read_contraction(source: str | Path) -> Contraction:
-    """Read a stage file; "-" is standard input.
+    """Read a stage file.
 
-    Raises TiskelError where the file is missing, damaged, or none of this stage.
+    Parameters
+    ----------
+    source : str or Path
+        A path, or "-" for standard input.
+
+    Returns
+    -------
+    Contraction
+
+    Raises
+    ------
+    TiskelError
+        Where the file is missing, damaged, or none of this stage.
 
     Examples
     --------
@@ -111,7 +123,20 @@ def read_contraction(source: str | Path) -> Contraction:
 
 
 def parse_contraction(data: bytes, name: str) -> Contraction:
-    """Return the contraction that a stage file holds."""
+    """Return the contraction in the bytes of a stage file.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is damaged or none of this stage.
+    """
     file = ply.parse(data, name)
     facts = ply.facts(file, STAGE, name)
     try:

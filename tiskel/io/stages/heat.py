@@ -15,8 +15,10 @@ NAMES = ("of_curve", "beta", "bounded", "inside", "centredness", "smoothness")
 def dump_heat(quality: Quality) -> bytes:
     """Return a PLY file that CloudCompare shows as scalar fields; NaN where a measure has no value.
 
-    Properties: of_curve (0 skeletal point, 1 sample of the curve, 2 vertex of the curve), beta, bounded, inside,
-    centredness, smoothness.
+    Its vertices are the skeletal points, then the samples and the vertices of the
+    curve, in the input's units. Properties: of_curve (0 skeletal point, 1 sample
+    of the curve, 2 vertex of the curve), beta, bounded, inside, centredness,
+    smoothness.
     """
     parts = [_points(quality.points), *_curve(quality.curve)]
     places = np.concatenate([part[0] for part in parts])

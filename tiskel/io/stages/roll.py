@@ -21,10 +21,33 @@ COLUMNS = (  # seconds, radians, the cloud's unit of length; margin in 1 / lengt
 
 
 def read_inputs(source: str | Path) -> Inputs:
-    """Read a CSV file with a header t, wx, wy, wz and, if there is slip, vx, vy, vz; "-" is standard input.
+    r"""Read inputs over time from CSV.
 
-    Raises TiskelError with the row of the first value that is missing, no
-    number, or a time that does not rise.
+    Parameters
+    ----------
+    source : str or Path
+        A file with a header t, wx, wy, wz (seconds, radians per second) and, if there is slip, vx, vy, vz (the
+        cloud's unit per second); "-" is standard input.
+
+    Returns
+    -------
+    Inputs
+
+    Raises
+    ------
+    TiskelError
+        With the row of the first value that is missing, no number, or a time that does not rise.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from tiskel.io.stages.roll import read_inputs
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "w.csv").write_text("t,wx,wy,wz\n0,0,1,0\n2,0,3,0\n")
+    ...     inputs = read_inputs(f"{folder}/w.csv")
+    >>> inputs.t.tolist(), inputs.values.shape
+    ([0.0, 2.0], (2, 6))
     """
     name = Path(source).name if str(source) != "-" else "stdin"
     try:
@@ -61,7 +84,7 @@ def _numbers(name: str, number: int, row: list[str], header: list[str]) -> list[
 
 
 def to_csv(trajectories: Sequence[Trajectory]) -> bytes:
-    """Return one table of all trajectories, a row for every time, named by their models."""
+    """Return one table of all trajectories as CSV: a row for every time, each named by its model."""
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
     table.writerow(COLUMNS)

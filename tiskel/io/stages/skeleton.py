@@ -57,7 +57,7 @@ def write_skeleton(target: str | Path, skeleton: Skeleton, source: dict[str, str
 
 
 def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
-    """Return the bytes of a stage file: the same bytes for the same skeleton."""
+    """Return the bytes of a stage file, the same for the same skeleton; see :func:`write_skeleton`."""
     vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radii, "branch": s.branch_of_node(), "degree": s.degrees}
     contracted: dict[str, Any] = {**ply.xyz(s.contracted), **ply.xyz(s.origin, ORIGIN), "row": s.rows}
     contracted["node"] = s.node_of_point[s.rows]
@@ -78,9 +78,21 @@ def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
 
 
 def read_skeleton(source: str | Path) -> Skeleton:
-    """Read a stage file; "-" is standard input.
+    """Read a stage file.
 
-    Raises TiskelError where the file is missing, damaged, or none of this stage.
+    Parameters
+    ----------
+    source : str or Path
+        A path, or "-" for standard input.
+
+    Returns
+    -------
+    Skeleton
+
+    Raises
+    ------
+    TiskelError
+        Where the file is missing, damaged, or none of this stage.
 
     Examples
     --------
@@ -95,7 +107,20 @@ def read_skeleton(source: str | Path) -> Skeleton:
 
 
 def parse_skeleton(data: bytes, name: str) -> Skeleton:
-    """Return the skeleton that a stage file holds."""
+    """Return the skeleton in the bytes of a stage file.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is damaged or none of this stage.
+    """
     file = ply.parse(data, name)
     facts = ply.facts(file, STAGE, name)
     try:

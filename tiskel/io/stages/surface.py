@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-import tiskel
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import DEGREE, Strip
 from tiskel.io import ply
@@ -30,6 +29,7 @@ from tiskel.params import SurfaceParams
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.tube import V_STOP, Tube
+from tiskel.version import version
 
 STAGE, FORMAT = "surface", 1
 
@@ -37,16 +37,42 @@ STAGE, FORMAT = "surface", 1
 def write_surfaces(
     target: str | Path, surfaces: Surfaces, params: SurfaceParams | None = None, source: dict[str, str] | None = None
 ) -> None:
-    """Write a stage file; "-" is standard output."""
+    """Write a stage file.
+
+    Parameters
+    ----------
+    target : path, or "-" for standard output
+        Where to.
+    surfaces : Surfaces
+        What is written.
+    params : SurfaceParams, optional
+        The settings that it was made with.
+    source : dict, optional
+        Name and SHA-256 of the input.
+
+    Raises
+    ------
+    TiskelError
+        Where the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_surface, make_shape, shape_graph, write_surfaces
+    >>> true = make_shape(shape_graph("banana"), ShapeParams(count=1000))[1]
+    >>> params = SurfaceParams(interval=0.05)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_surfaces(f"{folder}/surface.json", fit_surface(true, params), params)
+    """
     write_bytes(target, dump_surfaces(surfaces, params, source))
 
 
 def dump_surfaces(
     surfaces: Surfaces, params: SurfaceParams | None = None, source: dict[str, str] | None = None
 ) -> bytes:
-    """Return the bytes of a stage file: the same bytes for the same surfaces."""
+    """Return the bytes of a stage file, the same for the same surfaces; see :func:`write_surfaces`."""
     document = {
-        "tiskel": tiskel.__version__,
+        "tiskel": version(),
         "stage": STAGE,
         "format": FORMAT,
         "source": source or {},
@@ -77,12 +103,52 @@ def _section_document(section: Section) -> dict[str, Any]:
 
 
 def read_surfaces(source: str | Path) -> Surfaces:
-    """Read a stage file; "-" is standard input."""
+    """Read a stage file.
+
+    Parameters
+    ----------
+    source : str or Path
+        A path, or "-" for standard input.
+
+    Returns
+    -------
+    Surfaces
+
+    Raises
+    ------
+    TiskelError
+        Where the file is missing, damaged, or none of this stage.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_surface, make_shape, shape_graph
+    >>> from tiskel import read_surfaces, write_surfaces
+    >>> true = make_shape(shape_graph("banana"), ShapeParams(count=1000))[1]
+    >>> surfaces = fit_surface(true, SurfaceParams(interval=0.05))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_surfaces(f"{folder}/surface.json", surfaces)
+    ...     read_surfaces(f"{folder}/surface.json")[0].length == surfaces[0].length
+    True
+    """
     return parse_surfaces(read_bytes(source), str(source))
 
 
 def parse_surfaces(data: bytes, name: str) -> Surfaces:
-    """Return the surfaces that a stage file holds."""
+    """Return the surfaces in the bytes of a stage file.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is damaged or none of this stage.
+    """
     try:
         document = json.loads(data)
     except (ValueError, RecursionError) as error:

@@ -6,7 +6,7 @@ HEADER_LIMIT = 65536  # bytes; stage files name their stage in the first comment
 
 
 def stage_of(data: bytes) -> str | None:
-    """Return "contraction", "skeleton", "cloud", or None for a file that is not ours."""
+    """Return the stage that the bytes of a PLY file name, such as "contraction" or "skeleton"; None for other files."""
     if not data.startswith(ply.MAGIC):
         return None
     for line in data[:HEADER_LIMIT].split(b"\n"):

@@ -71,11 +71,13 @@ class Candidate:
         """The share of places on the curve outside the body and of points far from its cones.
 
         And one for every loop more or less than the body has handles. Where the
-        body is as thin as the points are apart, nothing is said.
+        body is as thin as the points are apart, or where there is no inside to
+        speak of, nothing is said of inside and outside.
         """
         off = 0 if self.solid.handles is None else abs(self.curve.loops - self.solid.handles)
         spacing = self.network.spacing
-        outside = (self.winding < OUTSIDE_SCORE) & (self.places[1] > THIN * spacing)
+        thick = (self.places[1] > THIN * spacing) & self.solid.trusted
+        outside = (self.winding < OUTSIDE_SCORE) & thick
         far = np.abs(self.fit.residual) > np.maximum(FAR * self.fit.radii, spacing)
         return off + float(outside.mean()) + (float(far.mean()) if len(far) else 0.0)
 

@@ -31,6 +31,7 @@ def without_filled_cycles(
 
     Nodes of sections are centred anew after that. Fitted ones are where they
     should be: their two sides must run within one another, and go to their mean.
+    That alone is asked where there is no inside to speak of.
     """
     for _ in range(ROUNDS):
         cycles = short_cycles(curve)
@@ -42,7 +43,10 @@ def without_filled_cycles(
         winding = solid.oriented.winding_numbers(np.concatenate([probes.reshape(-1, 3), curve.nodes]))
         across, own = winding[: probes.size // 3].reshape(-1, len(ALONG)), winding[probes.size // 3 :]
         one = _inside(rungs, owner, cycles, curve, across, own, solid.oriented.spacing)
-        one &= _overlapping(rungs, curve) if fitted else True
+        if not solid.trusted:
+            one = _overlapping(rungs, curve)
+        elif fitted:
+            one &= _overlapping(rungs, curve)
         filled = np.bincount(owner[~one], minlength=len(cycles)) == 0
         if not filled.any():
             break

@@ -2,8 +2,9 @@
 
 As in Thiery, Guy and Boubekeur, Sphere-meshes, SIGGRAPH Asia 2013, the model is a
 graph of balls whose edges are hulls of two of them. The residual of a point is its
-distance to the foot on its edge less the radius there. Least squares over all
-points (Gauss-Newton; Huber weights), with nodes held to the line of their
+signed distance to that hull, the least over the balls along the edge; where it is
+least is the foot point, and there its slope is that to the one ball. Least squares
+over all points (Gauss-Newton; Huber weights), with nodes held to the line of their
 neighbours and radii to the mean of theirs. Arcs and caps determine their circles
 and balls, so that scans with holes are centred and ends come to lie in the middle
 of the last ball.

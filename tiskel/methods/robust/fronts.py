@@ -68,8 +68,7 @@ def further_front(network: Network, contracted: Points, params: RobustParams, as
 
 def parts(network: Network, least: float) -> Indices:
     """Return (n,) the connected component of every point, -1 for those with less than this share of the points."""
-    part = connected_components(network.graph(network.lengths), directed=False)[1].astype(np.int32)
-    sizes = np.bincount(part)
+    part, sizes = network.component, np.bincount(network.component)
     large = sizes >= min(sizes.max(), max(SMALLEST_PART, least * len(part)))
     return np.where(large[part], part, -1).astype(np.int32)
 
@@ -87,7 +86,8 @@ def front(
     length = np.linalg.norm(contracted[first] - contracted[second], axis=1)
     if across > 0:
         length = length + across * network.lengths
-    graph = network.graph(np.maximum(2 * length / (widths[first] + widths[second]), np.finfo(float).tiny))
+    graph = network.links.copy()
+    graph.data = np.maximum(2 * length / (widths[first] + widths[second]), np.finfo(float).tiny)
     distance = np.full(len(part), np.nan)
     for number in np.unique(part[part >= 0]):
         rows: Indices = np.flatnonzero(part == number).astype(np.int32)

@@ -38,7 +38,7 @@ def placed_junctions(curve: ConeCurve, solid: Solid) -> ConeCurve:
     """Move junctions to where the lines of their branches come closest, and clear the nodes about them.
 
     The place closest to the lines, or the first on the way back to the middle
-    of the branches that is inside.
+    of the branches that is inside, where there is an inside to speak of.
     """
     paths: dict[int, list[Indices]] = {}
     for path in curve.paths_from(ends=False):
@@ -48,8 +48,10 @@ def placed_junctions(curve: ConeCurve, solid: Solid) -> ConeCurve:
     joints = sorted(paths)
     into, lines = _cleared(curve, {joint: paths[joint] for joint in joints})
     tries = np.stack([_places(curve, joint, paths[joint], lines[joint]) for joint in joints])
-    inside = solid.oriented.winding_numbers(tries.reshape(-1, 3)).reshape(len(joints), -1)
-    chosen = np.where((inside > INSIDE).any(axis=1), (inside > INSIDE).argmax(axis=1), inside.argmax(axis=1))
+    chosen = np.zeros(len(joints), int)
+    if solid.trusted:
+        inside = solid.oriented.winding_numbers(tries.reshape(-1, 3)).reshape(len(joints), -1)
+        chosen = np.where((inside > INSIDE).any(axis=1), (inside > INSIDE).argmax(axis=1), inside.argmax(axis=1))
     nodes = curve.nodes.copy()
     nodes[joints] = tries[np.arange(len(joints)), chosen]
     return contract_nodes(replace(curve, nodes=nodes), into)

@@ -5,15 +5,16 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.rings import Rings
+from tiskel.geometry.spacing import spacings_from
 
 NORMAL_NEIGHBOURS = 12  # the point included; the plane through them
 AREA_NEIGHBOURS = 8  # in a disc about the point
-SPACING_NEIGHBOURS = 4  # as many lie within 1.13 spacings on an even surface
 FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour
 ALONG_NORMALS = 0.75  # cosine: such a step leaves the surface at both of its ends
 
@@ -59,15 +60,22 @@ class Network:
         """The median spacing."""
         return float(np.median(self.spacings))
 
-    def graph(self, weights: Numbers) -> sparse.csr_array:
-        """Return the upper triangle of the graph's matrix."""
+    @cached_property
+    def links(self) -> sparse.csr_array:
+        """The upper triangle of the graph's matrix, ones; its data are in the order of the edges."""
         count = len(self.points)
-        return sparse.coo_array((weights, (self.edges[:, 0], self.edges[:, 1])), shape=(count, count)).tocsr()
+        ones = np.ones(len(self.edges))
+        return sparse.coo_array((ones, (self.edges[:, 0], self.edges[:, 1])), shape=(count, count)).tocsr()
+
+    @cached_property
+    def component(self) -> Indices:
+        """(n,) the connected component of every point."""
+        return np.asarray(connected_components(self.links, directed=False)[1], np.int32)
 
     @cached_property
     def averaging(self) -> sparse.csr_array:
         """The matrix (n, n) that replaces values by their mean over a point and its neighbours."""
-        half = self.graph(np.ones(len(self.edges)))
+        half = self.links
         whole = sparse.csr_array(half + half.T + sparse.eye_array(len(self.points), format="csr"))
         return sparse.csr_array(sparse.diags_array(1 / whole.sum(axis=1)) @ whole)
 
@@ -113,7 +121,7 @@ def neighbour_network(points: Points, k: int, axes: Numbers | None = None) -> Ne
     here = np.abs(np.einsum("nkc,nc->nk", steps, normals))
     there = np.abs(np.einsum("nkc,nkc->nk", steps, normals[neighbours]))
     disc = min(AREA_NEIGHBOURS, neighbours.shape[1] - 1)
-    spacings = lengths[:, min(SPACING_NEIGHBOURS, disc)] / np.sqrt(SPACING_NEIGHBOURS / np.pi)
+    spacings = spacings_from(squares)
     kept = np.minimum(here, there) < ALONG_NORMALS * lengths
     kept &= lengths <= FARTHEST * np.minimum(spacings[:, None], spacings[neighbours])
     kept[:, 0] = False

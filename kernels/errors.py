@@ -1,0 +1,17 @@
+"""The one exception that callers need to know; it stands in the lowest room, so that kernels can raise it too."""
+
+
+class TiskelError(Exception):
+    """The input or the run failed; the message says what, which value, and what to do.
+
+    Examples
+    --------
+    >>> from tiskel import TiskelError, load_cloud
+    >>> try:
+    ...     load_cloud("missing.xyz")
+    ... except TiskelError as error:
+    ...     print(error)
+    no file missing.xyz; check the path
+    """
+
+    __module__ = "tiskel.errors"  # where callers find it

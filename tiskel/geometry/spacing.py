@@ -1,0 +1,40 @@
+"""How far the points of a cloud are apart: one definition for all rooms.
+
+The spacing about a point is the side of the square that holds one point, for the
+k-th nearest other at distance d: pi d^2 holds k points, so the side is
+d sqrt(pi / k). On a random sample that is unbiased, where the distance to the
+nearest other is half of it; on a square lattice it is 0.89 of the lattice's side.
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Numbers, Points
+
+NEIGHBOURS = 4  # others that are counted: the four sides of a square lattice
+
+
+def spacings_from(squares: Numbers) -> Numbers:
+    """Return (n,) the spacing about each point.
+
+    Parameters
+    ----------
+    squares : (n, k) float64
+        Squared distances to the k nearest points, the point itself first.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(spacings_from(np.array([[0.0, 1, 1, 1, 1]]))[0].round(3))
+    0.886
+    """
+    k = min(NEIGHBOURS, squares.shape[1] - 1)
+    return np.asarray(np.sqrt(squares[:, k]) / np.sqrt(max(k, 1) / np.pi))
+
+
+def spacing_of(points: Points) -> float:
+    """Return the median spacing of points (n, 3), 0 of fewer than two."""
+    if len(points) < 2:
+        return 0.0
+    distances = cKDTree(points).query(points, k=min(NEIGHBOURS + 1, len(points)))[0]
+    return float(np.median(spacings_from(distances**2)))
