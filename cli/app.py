@@ -9,33 +9,20 @@ from typing import Annotated, NoReturn
 import typer
 
 from tiskel.cli import console
-from tiskel.cli.contract import contract
-from tiskel.cli.convert import convert
-from tiskel.cli.doctor import doctor
-from tiskel.cli.info import info
-from tiskel.cli.metrics import metrics
-from tiskel.cli.roll import roll
-from tiskel.cli.run import run
-from tiskel.cli.shape import shape
-from tiskel.cli.skeleton import skeleton
-from tiskel.cli.slice import slice_command
-from tiskel.cli.stability import stability
+from tiskel.cli.commands import MARKUP, Commands
 from tiskel.errors import TiskelError
 
 FAILED, INTERRUPTED = 1, 130
 
 app = typer.Typer(
+    cls=Commands,
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
-    rich_markup_mode="markdown",
-    help="Curve skeletons of point clouds. Stages chain through pipes: "
-    "`tiskel contract in.ply | tiskel skeleton - -o out.ply`",
+    rich_markup_mode=MARKUP,
+    help="Curve skeletons of point clouds. Stages chain through pipes:\n\n"
+    "tiskel contract in.ply | tiskel skeleton - -o out.ply",
 )
-for command in (contract, skeleton, metrics, stability, run, shape, convert, info, doctor):
-    app.command(no_args_is_help=command not in (doctor, shape))(command)
-app.command("slice", no_args_is_help=True)(slice_command)
-app.command(no_args_is_help=True)(roll)
 
 
 class Interrupted(BaseException):
@@ -71,7 +58,7 @@ def main() -> None:
     except TiskelError as error:
         _fail(str(error), error)
     except Interrupted:
-        console.errors.print("interrupted")
+        console.errors().print("interrupted")
         _leave(INTERRUPTED)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the interpreter complains on its way out
@@ -84,9 +71,9 @@ def main() -> None:
 
 def _fail(message: str, error: BaseException) -> NoReturn:
     if console.session.verbose:
-        console.errors.print_exception()
+        console.errors().print_exception()
     console.log.error(message)
-    console.errors.print(f"error: {' '.join(message.split())}", markup=False)
+    console.errors().print(f"error: {' '.join(message.split())}", markup=False)
     _leave(FAILED)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from tiskel.cli import method_options, options, surface_options
 from tiskel.cli.console import begin
+from tiskel.cli.options import CONDITIONING
 
 Command = Callable[..., None]
 
@@ -18,17 +19,17 @@ COMMON: dict[str, tuple[Any, Any]] = {
     "log_file": (options.LogFile, None),
 }
 INPUT: dict[str, tuple[Any, Any]] = {
-    "voxel": (options.Voxel, None),
-    "sample": (options.Sample, None),
-    "crop": (options.Crop, None),
-    "outliers": (options.Outliers, False),
-    "cap": (options.Cap, False),
-    "noise": (options.Noise, 0.0),
-    "noise_kind": (options.NoiseKind, "coordinates"),
-    "seed": (options.Seed, 0),
+    "voxel": (options.Voxel, CONDITIONING.voxel),
+    "sample": (options.Sample, CONDITIONING.sample),
+    "crop": (options.Crop, CONDITIONING.crop),
+    "outliers": (options.Outliers, CONDITIONING.outliers),
+    "cap": (options.Cap, CONDITIONING.cap),
+    "noise": (options.Noise, CONDITIONING.noise),
+    "noise_kind": (options.NoiseKindName, CONDITIONING.noise_kind),
+    "seed": (options.Seed, CONDITIONING.seed),
 }
 ROLLING: dict[str, tuple[Any, Any]] = {
-    "model": (surface_options.Model, "both"),
+    "model": (surface_options.ModelsName, surface_options.USUAL),
     "side": (surface_options.SideName, surface_options.ROLL.side),
     "sphere": (surface_options.Sphere, surface_options.ROLL.radius),
     "omega": (surface_options.Omega, surface_options.OMEGA),

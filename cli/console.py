@@ -1,16 +1,18 @@
 """Messages on stderr, and how errors leave the program."""
 
+import functools
 import logging
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-
-from rich.console import Console
-from rich.table import Table
+from typing import TYPE_CHECKING
 
 from tiskel.errors import TiskelError
+from tiskel.messages import Messages
 
-errors = Console(stderr=True, highlight=False, soft_wrap=True)
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
 
 
 @dataclass
@@ -46,11 +48,19 @@ def begin(*, threads: int | None, quiet: bool, verbose: bool, strict: bool, log_
         log.info("%s", " ".join(sys.argv[1:]))
 
 
+@functools.cache
+def errors() -> "Console":
+    """Return the one console of stderr; Rich is imported where something is said."""
+    from rich.console import Console
+
+    return Console(stderr=True, highlight=False, soft_wrap=True)
+
+
 def say(message: str) -> None:
     """Tell the user something on stderr, unless quiet."""
     log.info(message)
     if not session.quiet:
-        errors.print(message, markup=False)
+        errors().print(message, markup=False)
 
 
 def warn(messages: tuple[str, ...]) -> None:
@@ -60,11 +70,22 @@ def warn(messages: tuple[str, ...]) -> None:
             raise TiskelError(f"{message} (an error because of --strict)")
         log.warning(message)
         if not session.quiet:
-            errors.print(f"warning: {message}", markup=False)
+            errors().print(f"warning: {message}", markup=False)
 
 
-def table(title: str, columns: list[str], rows: list[list[str]]) -> Table:
+def tell(messages: Messages) -> None:
+    """Say what the stages have to say, warnings as warnings."""
+    for message in messages:
+        if message.warning:
+            warn((message.text,))
+        else:
+            say(message.text)
+
+
+def table(title: str, columns: list[str], rows: list[list[str]]) -> "Table":
     """Return a Rich table of strings, numbers to the right."""
+    from rich.table import Table
+
     made = Table(title=title, title_justify="left")
     for column in columns:
         made.add_column(column, justify="right")

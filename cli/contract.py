@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+from tiskel import messages
+from tiskel.cli import console, stages
 from tiskel.cli import options as o
-from tiskel.cli import stages
 from tiskel.cli.common import common, contracts, reads_cloud
 
 
@@ -26,11 +27,15 @@ def contract(
     Writes contraction.ply, which `tiskel skeleton` reads: `tiskel contract scan.ply | tiskel skeleton - -o curve.ply`
     """
     params = stages.contraction_params(method, contracting)
-    cloud, points = stages.cloud_points(source, **conditioning)
+    conditioning_params = stages.conditioning_params(conditioning)
+    from tiskel import condition
     from tiskel import contract as contract_cloud
     from tiskel.io.stages.contraction import dump_contraction
 
-    contraction = contract_cloud(points, params, stages.weights_of(cloud, points, weights))
+    cloud = stages.read_cloud(source, conditioning_params)
+    points, report = condition(cloud.points, conditioning_params)
+    console.tell(messages.said(report))
+    contraction = contract_cloud(points, params, stages.weights_of(cloud, weights))
     stages.tell_contraction(contraction)
     target = stages.output_path(output, source, "contraction.ply")
     stages.write(target, lambda: dump_contraction(contraction, cloud.source, history=history))

@@ -13,7 +13,9 @@ Target = Annotated[Path, typer.Argument(metavar="OUT", help="A file; its suffix 
 
 
 @common
-def convert(source: o.Source, target: Target, sample: o.Sample = None, seed: o.Seed = 0) -> None:
+def convert(
+    source: o.Source, target: Target, sample: o.Sample = o.CONDITIONING.sample, seed: o.Seed = o.CONDITIONING.seed
+) -> None:
     """Convert a cloud, a mesh or a skeleton to another format.
 
     Clouds go to PLY, XYZ, PTS, CSV, TXT, NPY; a skeleton file to OBJ lines, SWC, GraphML, JSON or PLY; any stage file

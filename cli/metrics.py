@@ -11,7 +11,7 @@ from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
 from tiskel.errors import TiskelError
-from tiskel.params import MetricParams, Normalisation
+from tiskel.params import Bars, MetricParams, Normalisation
 
 if TYPE_CHECKING:
     from tiskel.arrays import Points
@@ -54,9 +54,9 @@ CurveFile = Annotated[
     ),
 ]
 BarRule = Annotated[
-    str,
+    Bars,
     typer.Option(
-        metavar="toolbox|max",
+        "--bars",
         help="Which bars are compared: as in the toolbox, or as in print.",
         rich_help_panel="Method",
     ),
@@ -101,7 +101,7 @@ def metrics(
     A table on a terminal, otherwise JSON, one line for each skeleton: `tiskel metrics gls.ply lbc.ply`. Curves of
     other programs come with their cloud: `tiskel metrics --cloud scan.ply --curve other.swc | jq .inside`
     """
-    params = MetricParams(bars=bars, diagonal=not no_diagonal, normalise=normalise, seed=seed)  # type: ignore[arg-type]
+    params = MetricParams(bars=bars, diagonal=not no_diagonal, normalise=normalise, seed=seed)
     if as_json and as_csv:
         raise TiskelError("--json and --csv exclude each other; choose one")
     given: list[Path | None] = [*(sources or ())] or [None]

@@ -5,9 +5,11 @@ from typing import Annotated
 
 import typer
 
-from tiskel.params import Method, RobustParams
+from tiskel.params import ConditioningParams, Method, NoiseKind, PipelineParams
 
-METHOD: Method = RobustParams().method
+CONDITIONING = ConditioningParams()
+PIPELINE = PipelineParams()
+METHOD: Method = PIPELINE.contraction.method
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="A file, or - for standard input.", show_default=False)]
 Output = Annotated[
@@ -73,10 +75,10 @@ Cap = Annotated[bool, typer.Option("--cap", help="Close open tube ends.", rich_h
 Noise = Annotated[
     float, typer.Option(metavar="SHARE", help="Add Gaussian noise, for experiments.", rich_help_panel="Input")
 ]
-NoiseKind = Annotated[
-    str,
+NoiseKindName = Annotated[
+    NoiseKind,
     typer.Option(
-        metavar="coordinates|diagonal",
+        "--noise-kind",
         help="What the share is of: each centred coordinate, or half the diagonal.",
         rich_help_panel="Input",
     ),

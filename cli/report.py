@@ -3,18 +3,16 @@
 import html
 from typing import TYPE_CHECKING, Any
 
+from tiskel import messages
+
 if TYPE_CHECKING:
-    from tiskel.cli.run_surface import Rolled
-    from tiskel.contraction import Contraction
     from tiskel.metrics.result import Quality
-    from tiskel.metrics.stability import Stability
-    from tiskel.skeleton import Skeleton
+    from tiskel.pipeline import PipelineResult
 
 
-def report(
-    name: str, c: "Contraction", s: "Skeleton", q: "Quality", stability: "Stability", rolled: "Rolled"
-) -> str:  # fmt: skip
+def report(name: str, result: "PipelineResult") -> str:
     """Return one page: what went in, what came out, the steps, the measures, the pictures."""
+    c, s, q = result.contraction, result.skeleton, result.quality
     facts = {
         "points": len(c.cloud),
         "method": c.params.method,
@@ -42,30 +40,30 @@ def report(
         table=table,
         warnings=warnings,
         history=history,
-        stability=html.escape(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}"),
+        stability=html.escape("; ".join(m.text for m in messages.of_stability(result.stability))),
         measures="".join(map(_row, _measures(q))),
-        surfaces=_surfaces(rolled),
+        surfaces=_surfaces(result),
     )
 
 
-def _surfaces(rolled: "Rolled") -> str:
+def _surfaces(result: "PipelineResult") -> str:
     """Return tables of surfaces and runs with their pictures, and why there are none."""
     parts = []
-    if rolled.surfaces is not None:
+    if result.surfaces is not None:
         head = ("branch", "length", "radius", "order", "misfit", "frame", "slices", "warnings")
         rows: list[tuple[object, ...]] = [
             (
                 s.name, f"{s.length:.6g}", f"{s.radius:.4g}", s.order, f"{s.error:.2%}", s.frame,
                 ", ".join(f"{count} {case}" for case, count in s.cases().items()), "; ".join(s.warnings),
             )
-            for s in rolled.surfaces
+            for s in result.surfaces
         ]  # fmt: skip
-        rows += [(branch, "", "", "", "", "", "", why) for branch, why in rolled.surfaces.rejected.items()]
+        rows += [(branch, "", "", "", "", "", "", why) for branch, why in result.surfaces.rejected.items()]
         parts += [_row(head, "th"), *map(_row, rows), IMAGE.format("slices.png", "slices, a section, the surface")]
-    if rolled.runs:
-        parts += [_row((key, *(r.as_dict()[key] for r in rolled.runs))) for key in TOLD]
+    if result.trajectories:
+        parts += [_row((key, *(r.as_dict()[key] for r in result.trajectories))) for key in TOLD]
         parts.append(IMAGE.format("roll.png", "the contact on object and sphere, and the states over time"))
-    return f"<table>{''.join(parts)}</table><p>{html.escape(rolled.reason)}</p>"
+    return f"<table>{''.join(parts)}</table><p>{html.escape(result.reason)}</p>"
 
 
 TOLD = ("model", "side", "radius", "status", "reason", "path_object", "path_sphere", "least_margin", "evaluations")

@@ -1,10 +1,12 @@
 """``tiskel roll``."""
 
 import json
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
@@ -33,7 +35,7 @@ def roll(
     source: o.Source,
     output: o.Output = None,
     branch: BranchName = None,
-    model: so.Model = so.ROLL.model,
+    model: so.ModelsName = so.ROLL.model,
     side: so.SideName = so.ROLL.side,
     radius: so.SphereRadius = so.ROLL.radius,
     omega: so.Omega = so.OMEGA,
@@ -57,7 +59,8 @@ def roll(
     `tiskel slice s.ply | tiskel roll - --omega 1,0,0 --duration 5 > path.csv`
     """
     settings = so.roll_settings(
-        model, side, radius, omega, velocity, twist, duration, rate, start, start_at, normals, rtol, atol
+        model, side, radius, omega, duration, start, rtol, atol,
+        velocity=velocity, twist=twist, rate=rate, start_at=start_at, normals=normals,
     )  # fmt: skip
     given = so.inputs_of(inputs)
     from tiskel import roll as run
@@ -66,7 +69,7 @@ def roll(
 
     surface = read_surfaces(source).named(branch)
     runs = [run(surface, params, given) for params in settings]
-    tell_runs(runs)
+    console.tell(messages.of_runs(runs))
     if plot is not None:
         from tiskel.pictures.canvas import picture_kind
         from tiskel.pictures.rolling import rolling_picture
@@ -83,16 +86,6 @@ def roll(
         stages.write(stages.output_path(output, source, "path.csv"), lambda: to_csv(runs))
 
 
-def tell_runs(runs: "list[Trajectory]") -> None:
-    """Print a line for every run, and warnings."""
-    for r in runs:
-        console.say(
-            f"{r.params.model} model, sphere of radius {r.radius:.4g} {r.params.side}: {r.status.value}, {r.reason}; "
-            f"way over the object {r.path_object:.6g}, over the sphere {r.path_sphere:.6g}"
-        )
-    console.warn(tuple(dict.fromkeys(warning for r in runs for warning in r.warnings)))
-
-
-def summary(branch: str, runs: "list[Trajectory]") -> dict[str, Any]:
+def summary(branch: str, runs: "Sequence[Trajectory]") -> dict[str, Any]:
     """Return the summaries of the runs on one branch."""
     return {"branch": branch, "runs": [r.as_dict() for r in runs]}

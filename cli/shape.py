@@ -9,6 +9,9 @@ from tiskel.cli import options as o
 from tiskel.cli import stages
 from tiskel.cli.common import common
 from tiskel.cli.skeleton import format_of
+from tiskel.params import ShapeParams
+
+SHAPE = ShapeParams()
 
 Name = Annotated[str | None, typer.Argument(metavar="[NAME]", help="A shape; none lists them.", show_default=False)]
 Count = Annotated[int, typer.Option("-n", "--count", min=1, metavar="N", help="Points.")]
@@ -25,18 +28,18 @@ SkeletonOutput = Annotated[
 def shape(
     name: Name = None,
     output: o.Output = None,
-    count: Count = 4096,
-    noise: Noise = 0.0,
-    missing: Missing = 0.0,
-    uneven: Uneven = 1.0,
-    seed: Seed = 0,
+    count: Count = SHAPE.count,
+    noise: Noise = SHAPE.noise,
+    missing: Missing = SHAPE.missing,
+    uneven: Uneven = SHAPE.uneven,
+    seed: Seed = SHAPE.seed,
     skeleton: SkeletonOutput = None,
 ) -> None:
     """Make a cloud whose curve skeleton is known: a union of round cones.
 
     `tiskel shape hand -n 16384 -o hand.ply --skeleton hand.skeleton.ply`
     """
-    from tiskel import ShapeParams, make_shape, shape_graph
+    from tiskel import make_shape, shape_graph
     from tiskel.gallery.catalogue import SHAPES
     from tiskel.io.clouds import dump_cloud
     from tiskel.io.exports import EXPORTS

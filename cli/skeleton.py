@@ -1,23 +1,24 @@
 """``tiskel skeleton``."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, get_args
 
 import typer
 
+from tiskel import messages
+from tiskel.cli import console, stages
 from tiskel.cli import options as o
-from tiskel.cli import stages
 from tiskel.cli.common import common, curves
 from tiskel.errors import TiskelError
 from tiskel.params import SkeletonParams
 
-FORMATS = ("ply", "obj", "swc", "graphml", "json")
+Format = Literal["ply", "obj", "swc", "graphml", "json"]
+FORMATS: tuple[Format, ...] = get_args(Format)
 
-Format = Annotated[
-    str | None,
+FormatName = Annotated[
+    Format | None,
     typer.Option(
         "--format",
-        metavar="|".join(FORMATS),
         help="Format. [default: by the suffix of OUT, else ply]",
         show_default=False,
         rich_help_panel="Output",
@@ -30,7 +31,7 @@ Format = Annotated[
 def skeleton(
     source: o.Source,
     output: o.Output = None,
-    format_name: Format = None,
+    format_name: FormatName = None,
     *,
     curving: Mapping[str, Any],
 ) -> None:
@@ -50,7 +51,7 @@ def skeleton(
 
     data = read_bytes(source)
     made = extract_skeleton(parse_contraction(data, str(source)), params)
-    stages.tell_skeleton(made)
+    console.tell(messages.of_skeleton(made))
     target = stages.output_path(output, source, f"skeleton.{chosen}")
     if chosen == "ply":
         stages.write(target, lambda: dump_skeleton(made, source_of(data, "contraction", str(source))))
@@ -58,10 +59,12 @@ def skeleton(
         stages.write(target, lambda: EXPORTS[chosen](made))
 
 
-def format_of(name: str | None, output: str) -> str:
+def format_of(name: Format | None, output: str) -> Format:
     """Return the format named, or that of the suffix, or PLY."""
     suffix = output.rpartition(".")[2].lower() if "." in output else ""
-    chosen = name or (suffix if suffix in FORMATS else "ply" if not suffix or output == "-" else suffix)
-    if chosen not in FORMATS:
-        raise TiskelError(f"a skeleton cannot be written as {chosen!r}; choose one of {', '.join(FORMATS)}")
-    return chosen
+    if name or not suffix or output == "-":
+        return name or "ply"
+    for known in FORMATS:
+        if suffix == known:
+            return known
+    raise TiskelError(f"a skeleton cannot be written as {suffix!r}; choose one of {', '.join(FORMATS)}")

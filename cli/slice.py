@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
@@ -70,7 +71,7 @@ def slice_command(
     """
     params = so.surface_params(branch, interval, m, order_rule, no_recentre)
     surfaces, origin = _fitted(source, curve, params)
-    tell_surfaces(surfaces)
+    console.tell(messages.of_surfaces(surfaces))
     from tiskel.io.mesh_file import dump_mesh
     from tiskel.io.stages.surface import dump_surfaces
     from tiskel.slicing.mesh import joined_mesh, surface_mesh
@@ -104,20 +105,6 @@ def _fitted(source: Path, curve: Path | None, params: "SurfaceParams") -> "tuple
     cloud = load_cloud(source)
     console.warn(cloud.warnings)
     return fit_surface(load_curve(curve), params, cloud.points), cloud.source
-
-
-def tell_surfaces(surfaces: "Surfaces") -> None:
-    """Print a line for every surface, why others have none, and warnings."""
-    for s in surfaces:
-        off, told = s.distance, ", ".join(f"{count} {case}" for case, count in s.cases().items())
-        frame = f"frame {s.frame}" + (f" ({s.note})" if s.note else "")
-        console.say(
-            f"branch {s.name}: length {s.length:.6g}, radius {s.radius:.4g}, order {s.order}, slices: {told}; {frame}; "
-            f"distance to {len(s.rows)} points: mean {off['mean']:.3g}, 95 % {off['p95']:.3g}, most {off['max']:.3g}"
-        )
-    for name, reason in surfaces.rejected.items():
-        console.say(f"branch {name} has no surface: {reason}")
-    console.warn(tuple(warning for s in surfaces for warning in s.warnings))
 
 
 def slices_csv(surfaces: "Surfaces") -> bytes:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
@@ -39,7 +40,8 @@ def stability(source: o.Source, as_json: o.AsJson = False, plot: o.Plot = None) 
     from rich.console import Console
 
     Console().print(_table(result))
-    Console().print(f"{'stable' if result.stable else 'not stable'}: {result.reason}", markup=False)
+    for message in messages.of_stability(result):
+        Console().print(message.text, markup=False)
 
 
 def _table(result: "Stability"):  # type: ignore[no-untyped-def]

@@ -8,61 +8,40 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tiskel import messages
 from tiskel.cli import console
 from tiskel.errors import TiskelError
-from tiskel.params import ContractionParams, params_class, settings_of
+from tiskel.params import ConditioningParams, ContractionParams, params_class, settings_of
 
 if TYPE_CHECKING:
-    from tiskel.arrays import Numbers, Points
+    from tiskel.arrays import Numbers
     from tiskel.contraction import Contraction
     from tiskel.io.clouds import Cloud
-    from tiskel.skeleton import Skeleton
 
 PARTS_OF_PI = re.compile(r"([+-]?)(?:(\d+(?:\.\d+)?)\*)?pi(?:/(\d+(?:\.\d+)?))?")
 
 
-def cloud_points(
-    source: Path,
-    *,
-    voxel: float | None,
-    sample: int | None,
-    crop: str | None,
-    outliers: bool,
-    cap: bool,
-    noise: float,
-    noise_kind: str,
-    seed: int,
-) -> tuple["Cloud", "Points"]:
-    """Read a cloud and condition it as the input options say."""
-    from tiskel import ConditioningParams, condition, load_cloud
+def conditioning_params(given: Mapping[str, Any]) -> ConditioningParams:
+    """Return what the input options say."""
+    return ConditioningParams(**{**given, "crop": _numbers("--crop", given["crop"], 6)})
 
-    params = ConditioningParams(
-        voxel=voxel,
-        sample=sample,
-        crop=_numbers("--crop", crop, 6),
-        outliers=outliers,
-        cap=cap,
-        noise=noise,
-        noise_kind=noise_kind,  # type: ignore[arg-type]
-        seed=seed,
-    )
-    cloud = load_cloud(source, mesh_samples=sample, seed=seed)
+
+def read_cloud(source: Path, params: ConditioningParams) -> "Cloud":
+    """Read a cloud and tell its warnings; a mesh is sampled to as many points as the cloud is to have."""
+    from tiskel import load_cloud
+
+    cloud = load_cloud(source, mesh_samples=params.sample, seed=params.seed)
     console.warn(cloud.warnings)
-    points, report = condition(cloud.points, params)
-    for line in report:
-        console.say(line)
-    return cloud, points
+    return cloud
 
 
-def weights_of(cloud: "Cloud", points: "Points", name: str | None) -> "Numbers | None":
+def weights_of(cloud: "Cloud", name: str | None) -> "Numbers | None":
     """Return a property of the cloud, one number per point, or nothing where none is named."""
     if name is None:
         return None
     if name not in cloud.properties:
         known = ", ".join(cloud.properties) or "none"
         raise TiskelError(f"--weights: {cloud.name} has no property {name!r}; it has {known}")
-    if len(points) != len(cloud.points):
-        raise TiskelError("--weights names a value for every point of the file; leave out what changes their number")
     return cloud.properties[name]
 
 
@@ -74,14 +53,15 @@ def contraction_params(method: str, given: Mapping[str, Any]) -> ContractionPara
 
 
 def tell_contraction(c: "Contraction") -> None:
-    """Print warnings and one line of result; with --verbose the table of steps."""
-    console.warn(c.warnings)
-    console.say(
-        f"contracted {len(c.cloud)} points in {len(c.steps)} steps, {len(c.points)} left "
-        f"({len(c.points) / len(c.cloud):.1%}); {c.status.value}: {c.status.advice}"
-    )
+    """Tell what there is to say; with --verbose the table of steps, too."""
+    console.tell(messages.of_contraction(c))
+    tell_steps(c)
+
+
+def tell_steps(c: "Contraction") -> None:
+    """Print the table of steps with --verbose."""
     if console.session.verbose:
-        console.errors.print(_steps_table(c))
+        console.errors().print(_steps_table(c))
         console.say(f"neighbours and rings: {c.ring_seconds:.3f} s")
 
 
@@ -101,15 +81,6 @@ def _steps_table(c: "Contraction"):  # type: ignore[no-untyped-def]
         for number, step in enumerate(c.steps, 1)
     ]
     return console.table("steps", columns, rows)
-
-
-def tell_skeleton(s: "Skeleton") -> None:
-    """Print warnings and one line of result."""
-    console.warn(s.warnings)
-    console.say(
-        f"{len(s.nodes)} nodes, {len(s.edges)} edges: components {s.components}, loops {s.loops}, ends {s.ends}, "
-        f"joints {s.junctions}, branches {len(s.branches)}, length {s.length:.6g}"
-    )
 
 
 def output_path(output: Path | None, source: Path, ending: str) -> Path:

@@ -1,19 +1,21 @@
 """Options of the commands that slice and roll."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import typer
 
+from tiskel.cli.options import PIPELINE
 from tiskel.cli.stages import numbers_of
-from tiskel.errors import TiskelError
-from tiskel.params import RollParams, SurfaceParams
+from tiskel.params import FrameRule, Model, Normals, OrderRule, RollParams, Side, SurfaceParams, Twist
 
 if TYPE_CHECKING:
     from tiskel.rolling.inputs import Inputs
 
-SURFACE, ROLL = SurfaceParams(), RollParams()
-MODELS = {"global": ("global",), "local": ("local",), "both": ("global", "local")}
+Models = Literal["global", "local", "both"]
+MODELS: dict[Models, tuple[Model, ...]] = {"global": ("global",), "local": ("local",), "both": ("global", "local")}
+SURFACE, ROLL = PIPELINE.surface, RollParams()
+USUAL = next(name for name, models in MODELS.items() if models == tuple(run.model for run in PIPELINE.roll))
 
 
 def joined(values: tuple[float, ...] | str) -> str:
@@ -40,10 +42,9 @@ FrameField = Annotated[
     ),
 ]
 OrderRuleName = Annotated[
-    str,
+    OrderRule,
     typer.Option(
         "--order-rule",
-        metavar="cross-validated|published",
         help="How the order of the Fourier series is chosen.",
         rich_help_panel="Method",
     ),
@@ -52,17 +53,15 @@ NoRecentre = Annotated[
     bool,
     typer.Option("--no-recentre", help="Keep the curve where it is, smoothed only.", rich_help_panel="Method"),
 ]
-Model = Annotated[
-    str,
+ModelsName = Annotated[
+    Models,
     typer.Option(
-        metavar="global|local|both",
+        "--model",
         help="The surface as it is, or straight along its skeleton; both side by side.",
         rich_help_panel="Method",
     ),
 ]
-SideName = Annotated[
-    str, typer.Option("--side", metavar="outside|inside", help="Of the surface.", rich_help_panel="Method")
-]
+SideName = Annotated[Side, typer.Option("--side", help="Of the surface.", rich_help_panel="Method")]
 _SPHERE = {
     "metavar": "R",
     "help": "Of the sphere. [default: a quarter of the branch's median radius]",
@@ -86,10 +85,9 @@ InputsFile = Annotated[
     ),
 ]
 TwistName = Annotated[
-    str,
+    Twist,
     typer.Option(
         "--twist",
-        metavar="object|sphere|world",
         help="Whose twist: the object's relative to the sphere in the contact frame; the sphere's in its own; the "
         "sphere's in the axes of the cloud.",
         rich_help_panel="Method",
@@ -118,10 +116,9 @@ StartAt = Annotated[
     ),
 ]
 NormalsName = Annotated[
-    str,
+    Normals,
     typer.Option(
         "--normals",
-        metavar="surface|pca",
         help="Where curvature comes from; pca is the printed variant, for comparison.",
         rich_help_panel="Method",
     ),
@@ -148,41 +145,49 @@ Animate = Annotated[
 ]
 
 
-def surface_params(
-    branch: str, interval: float, m: str, order_rule: str, no_recentre: bool
-) -> SurfaceParams:  # fmt: skip
+def surface_params(branch: str, interval: float, m: str, order_rule: OrderRule, no_recentre: bool) -> SurfaceParams:
     """Return the settings of slice."""
-    direction = m if m in ("normal", "rotation-minimising") else numbers_of("--m", m, 3)
     return SurfaceParams(
-        branch=branch, interval=interval, m=direction, order_rule=order_rule, recentre=not no_recentre,  # type: ignore[arg-type]
+        branch=branch, interval=interval, m=_direction(m), order_rule=order_rule, recentre=not no_recentre
     )  # fmt: skip
 
 
+def _direction(m: str) -> tuple[float, float, float] | FrameRule:
+    rules: tuple[FrameRule, ...] = get_args(FrameRule)
+    return next((rule for rule in rules if m == rule), None) or three("--m", m)
+
+
 def roll_settings(
-    model: str, side: str, radius: float | None, omega: str, velocity: str, twist: str, duration: float | None,
-    rate: float, start: str, start_at: str | None, normals: str, rtol: float, atol: float,
-) -> list[RollParams]:  # fmt: skip
+    model: Models, side: Side, sphere: float | None, omega: str, duration: float | None, start: str, rtol: float,
+    atol: float, *, velocity: str = VELOCITY, twist: Twist = ROLL.twist, rate: float = ROLL.rate,
+    start_at: str | None = None, normals: Normals = ROLL.normals,
+) -> tuple[RollParams, ...]:  # fmt: skip
     """Return the settings of every run that a choice of model asks for."""
-    if model not in MODELS:
-        raise TiskelError(f"--model must be one of {', '.join(MODELS)}, got {model!r}")
-    return [
+    u, v, us, vs, psi = numbers_of("--start", start, 5)
+    return tuple(
         RollParams(
-            model=one,  # type: ignore[arg-type]
-            side=side,  # type: ignore[arg-type]
-            radius=radius,
-            omega=numbers_of("--omega", omega, 3),  # type: ignore[arg-type]
-            velocity=numbers_of("--velocity", velocity, 3),  # type: ignore[arg-type]
-            twist=twist,  # type: ignore[arg-type]
+            model=one,
+            side=side,
+            radius=sphere,
+            omega=three("--omega", omega),
+            velocity=three("--velocity", velocity),
+            twist=twist,
             duration=duration,
             rate=rate,
-            start=numbers_of("--start", start, 5),  # type: ignore[arg-type]
-            start_at=None if start_at is None else numbers_of("--start-at", start_at, 3),  # type: ignore[arg-type]
-            normals=normals if one == "global" else "surface",  # type: ignore[arg-type]
+            start=(u, v, us, vs, psi),
+            start_at=None if start_at is None else three("--start-at", start_at),
+            normals=normals if one == "global" else "surface",
             rtol=rtol,
             atol=atol,
         )
         for one in MODELS[model]
-    ]
+    )
+
+
+def three(option: str, value: str) -> tuple[float, float, float]:
+    """Return the three numbers of an option."""
+    x, y, z = numbers_of(option, value, 3)
+    return x, y, z
 
 
 def inputs_of(path: Path | None) -> "Inputs | None":

@@ -82,9 +82,27 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
         _ = tiskel.skeletonise
 
 
-@pytest.mark.parametrize("code", ["import tiskel", "import tiskel.cli.app"])
+@pytest.mark.parametrize("code", ["import tiskel", "import tiskel.params", "import tiskel.cli.app"])
 def test_importing_loads_nothing_heavy(code: str) -> None:
-    heavy = "{'numpy', 'scipy', 'taichi', 'open3d', 'ripser', 'matplotlib', 'networkx', 'plyfile'}"
-    check = f"{code}; import sys; print(sorted({heavy} & set(sys.modules)))"
+    heavy = (
+        "{'numpy', 'scipy', 'taichi', 'open3d', 'ripser', 'matplotlib', 'networkx', 'plyfile', 'importlib.metadata'}"
+    )
+    assert loaded_by(code, heavy) == "[]"
+
+
+def test_the_package_alone_loads_next_to_nothing() -> None:
+    assert loaded_by("import tiskel", "{'importlib.metadata', 'dataclasses', 'tiskel.params', 'email'}") == "[]"
+
+
+def test_the_overview_loads_no_command_and_no_rich() -> None:
+    """Or the first answer of the program takes three times as long."""
+    code = "import contextlib, io; from tiskel.cli.app import app\n"
+    code += "with contextlib.redirect_stdout(io.StringIO()): app(['--help'], standalone_mode=False)\n"
+    assert loaded_by(code, "{'rich.console', 'tiskel.params', 'tiskel.cli.contract'}") == "[]"
+
+
+def loaded_by(code: str, modules: str) -> str:
+    """Return which of the modules are there after the code and were not before."""
+    check = f"import sys; before = set(sys.modules)\n{code}\nprint(sorted({modules} & set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True, cwd=ROOT / "tests")
-    assert done.stdout.strip() == "[]"
+    return done.stdout.strip()

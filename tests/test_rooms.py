@@ -33,8 +33,10 @@ ALLOWED = {
     "rolling": f"{STAGES} surfaces slicing",
     "io": f"{STAGES} version preprocess metrics surfaces slicing rolling",
     "pictures": f"{STAGES} metrics surfaces slicing rolling",
+    "messages": f"{STAGES} surfaces slicing rolling metrics",  # the wording of what the stages report
+    "pipeline": f"{STAGES} preprocess metrics surfaces slicing rolling io messages",
     "tiskel": "",  # the face of the package hands names on when they are asked for
-    "cli": f"{STAGES} tiskel version preprocess metrics gallery surfaces slicing rolling io pictures",
+    "cli": f"{STAGES} tiskel version preprocess metrics gallery surfaces slicing rolling io pictures pipeline messages",
 }
 WITHIN = {  # the same inside rooms that have rooms of their own
     "methods.trace": "",

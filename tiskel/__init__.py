@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from tiskel.contraction import Contraction as Contraction
     from tiskel.contraction import contract as contract
     from tiskel.errors import TiskelError as TiskelError
-    from tiskel.gallery.make import ShapeParams as ShapeParams
     from tiskel.gallery.make import make_shape as make_shape
     from tiskel.gallery.make import shape_graph as shape_graph
     from tiskel.geometry.graph import CurveGraph as CurveGraph
@@ -37,16 +36,20 @@ if TYPE_CHECKING:
     from tiskel.metrics.result import Quality as Quality
     from tiskel.metrics.stability import Stability as Stability
     from tiskel.metrics.stability import assess_stability as assess_stability
+    from tiskel.params import ConditioningParams as ConditioningParams
     from tiskel.params import ContractionParams as ContractionParams
     from tiskel.params import GlsParams as GlsParams
     from tiskel.params import LbcParams as LbcParams
     from tiskel.params import MetricParams as MetricParams
+    from tiskel.params import PipelineParams as PipelineParams
     from tiskel.params import RobustParams as RobustParams
     from tiskel.params import RollParams as RollParams
+    from tiskel.params import ShapeParams as ShapeParams
     from tiskel.params import SkeletonParams as SkeletonParams
     from tiskel.params import StabilityParams as StabilityParams
     from tiskel.params import SurfaceParams as SurfaceParams
-    from tiskel.preprocess.conditioning import ConditioningParams as ConditioningParams
+    from tiskel.pipeline import PipelineResult as PipelineResult
+    from tiskel.pipeline import run_pipeline as run_pipeline
     from tiskel.preprocess.conditioning import condition as condition
     from tiskel.rolling.bodies import BodyTrajectory as BodyTrajectory
     from tiskel.rolling.bodies import roll_body as roll_body
@@ -63,7 +66,7 @@ if TYPE_CHECKING:
 _HOME = {
     "BodyTrajectory": "rolling.bodies",
     "Cloud": "io.clouds",
-    "ConditioningParams": "preprocess.conditioning",
+    "ConditioningParams": "params",
     "Contraction": "contraction",
     "ContractionParams": "params",
     "CurveGraph": "geometry.graph",
@@ -73,11 +76,13 @@ _HOME = {
     "Inputs": "rolling.inputs",
     "LbcParams": "params",
     "MetricParams": "params",
+    "PipelineParams": "params",
+    "PipelineResult": "pipeline",
     "Quality": "metrics.result",
     "RobustParams": "params",
     "RollParams": "params",
     "RollStatus": "rolling.trajectory",
-    "ShapeParams": "gallery.make",
+    "ShapeParams": "params",
     "Skeleton": "skeleton",
     "SkeletonParams": "params",
     "Stability": "metrics.stability",
@@ -102,6 +107,7 @@ _HOME = {
     "read_surfaces": "io.stages.surface",
     "roll": "rolling.roll",
     "roll_body": "rolling.bodies",
+    "run_pipeline": "pipeline",
     "shape_graph": "gallery.make",
     "write_contraction": "io.stages.contraction",
     "write_skeleton": "io.stages.skeleton",

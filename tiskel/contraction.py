@@ -171,7 +171,10 @@ def contract(
 def _weights(weights: npt.ArrayLike, count: int) -> Numbers:
     values = np.asarray(weights, dtype=np.float64)
     if values.shape != (count,):
-        raise TiskelError(f"weights must be one number for each of the {count} points, got shape {values.shape}")
+        raise TiskelError(
+            f"weights must be one number for each of the {count} points, got shape {values.shape}; "
+            "leave out what changes the number of points"
+        )
     if not (np.isfinite(values) & (values > 0)).all():
         raise TiskelError("weights must be positive and finite; 1 leaves a point as it is")
     return values

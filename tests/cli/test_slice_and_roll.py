@@ -10,8 +10,8 @@ import pytest
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import contract, extract_skeleton, make_shape, read_surfaces, shape_graph, write_skeleton
-from tiskel.gallery.make import ShapeParams
 from tiskel.io.stages.roll import COLUMNS
+from tiskel.params import ShapeParams
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +171,6 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
         (("f.json", "--start", "0,4,0,0,0"), "v = 4 lies outside the branch"),
         (("f.json", "--start", "0,4"), "--start needs 5 numbers"),
         (("f.json", "--branch", "thumb"), "no surface of branch thumb; there are 0"),
-        (("f.json", "--model", "own"), "--model must be one of global, local, both"),
         (("f.json", "--omega", "a,b,c"), "--omega needs 3 numbers"),
         (("f.json", "--rtol", 0), "rtol must be a positive number, got 0"),
         (("f.json", "--velocity", "0,0,1"), "velocity along the normal must be 0"),

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from tiskel import TiskelError, make_shape, shape_graph
-from tiskel.gallery.make import ShapeParams
 from tiskel.gallery.random_graphs import EDGES, GAP, LENGTH, PER_SQUARE, RATIO, random_graph
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.round_cones import ConeGraph, signed_distance
 from tiskel.metrics.truth import agreement
+from tiskel.params import ShapeParams
 
 SHAPE = shape_graph("y")  # arms of 0.9 and 0.92, radius 0.14, its joint first
 NO_EDGES = np.zeros((0, 2), np.int32)

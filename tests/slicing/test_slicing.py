@@ -21,14 +21,13 @@ from tiskel import (
     write_surfaces,
 )
 from tiskel.arrays import Numbers, Points
-from tiskel.gallery.make import ShapeParams
 from tiskel.geometry.bspline import fit_strip
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.round_cones import union_distance
 from tiskel.io.mesh_file import dump_mesh
 from tiskel.io.ply import parse
 from tiskel.io.stages.surface import dump_surfaces, parse_surfaces
-from tiskel.params import SurfaceParams
+from tiskel.params import ShapeParams, SurfaceParams
 from tiskel.slicing.fit import places_of
 from tiskel.slicing.mesh import distances_to_mesh, measures, mesh_report, slice_table, surface_mesh
 from tiskel.slicing.paths import longest_path, paths_of

@@ -6,6 +6,7 @@ marked [T] are those of the published MATLAB toolboxes, which produced the
 published tables.
 """
 
+from tiskel.params.conditioning import ConditioningParams, NoiseKind
 from tiskel.params.methods import (
     MIN_POINTS,
     SIDE,
@@ -23,27 +24,34 @@ from tiskel.params.methods import (
     settings_of,
 )
 from tiskel.params.metrics import Bars, MetricParams
+from tiskel.params.pipeline import PipelineParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
+from tiskel.params.shape import ShapeParams
 from tiskel.params.skeleton import SkeletonParams
 from tiskel.params.stability import StabilityParams
-from tiskel.params.surface import OrderRule, SurfaceParams
+from tiskel.params.surface import FrameRule, OrderRule, SurfaceParams
 
 __all__ = [
     "MIN_POINTS",
     "SIDE",
     "Bars",
+    "ConditioningParams",
     "ContractionParams",
+    "FrameRule",
     "GlsParams",
     "LaplacianParams",
     "LbcParams",
     "Method",
     "MetricParams",
     "Model",
+    "NoiseKind",
     "Normalisation",
     "Normals",
     "OrderRule",
+    "PipelineParams",
     "RobustParams",
     "RollParams",
+    "ShapeParams",
     "Side",
     "SkeletonParams",
     "Solver",

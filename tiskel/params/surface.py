@@ -7,6 +7,7 @@ from typing import Literal, get_args
 from tiskel.errors import TiskelError
 from tiskel.params.checks import among
 
+FrameRule = Literal["normal", "rotation-minimising"]
 OrderRule = Literal["cross-validated", "published"]
 
 
@@ -23,7 +24,7 @@ class SurfaceParams:
 
     branch: str = "all"  #: a number, "all", or "longest": the longest path between two ends, through junctions
     interval: float = 0.02  #: between slices, as a share of the diagonal of the cloud [T]
-    m: tuple[float, float, float] | Literal["normal", "rotation-minimising"] = (0.0, 0.0, 1.0)  #: sets where u is 0 [T]
+    m: tuple[float, float, float] | FrameRule = (0.0, 0.0, 1.0)  #: sets where u is 0 [T]
     order_rule: OrderRule = "cross-validated"  #: or until the RMS error is below fit_error, in the unit of length [T]
     least_order: int = 3  #: of the Fourier series [T]
     most_order: int = 8  #: [T]
@@ -36,7 +37,7 @@ class SurfaceParams:
     def __post_init__(self) -> None:
         among("order_rule", self.order_rule, get_args(OrderRule))
         if isinstance(self.m, str):
-            among("m", self.m, ("normal", "rotation-minimising"))
+            among("m", self.m, get_args(FrameRule))
         elif len(self.m) != 3 or not any(self.m):
             raise TiskelError(f"m must be a direction of three numbers, not all 0, got {self.m}")
         if self.branch not in ("all", "longest") and not self.branch.isdigit():

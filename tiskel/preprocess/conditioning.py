@@ -1,57 +1,15 @@
 """What can be done to a cloud before the first stage; each off by default, each reported."""
 
-from dataclasses import dataclass
-from typing import Literal, get_args
-
 import numpy as np
 
 from tiskel.arrays import Mask, Points, as_points, diagonal, finite_rows
 from tiskel.errors import TiskelError
 from tiskel.geometry.neighbours import nearest_neighbours
+from tiskel.params import ConditioningParams, NoiseKind
 from tiskel.preprocess.capping import cap_points
-
-NoiseKind = Literal["coordinates", "diagonal"]
 
 OUTLIER_NEIGHBOURS = 17  # the point included; sixteen others, a common choice of statistical removal
 OUTLIER_DEVIATIONS = 2.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class ConditioningParams:
-    """Settings of :func:`tiskel.condition`; lengths in the input's units.
-
-    Examples
-    --------
-    >>> from tiskel import ConditioningParams
-    >>> ConditioningParams(outliers=True, voxel=0.05).cap
-    False
-    """
-
-    crop: tuple[float, ...] | None = None  #: xmin, ymin, zmin, xmax, ymax, zmax
-    outliers: bool = False  #: remove points whose mean neighbour distance is 2 deviations above the mean
-    voxel: float | None = None  #: side of the cubes whose points become their mean
-    sample: int | None = None  #: points of a random subset
-    cap: bool = False  #: close open tube ends with flat discs of points
-    noise: float = 0.0  #: standard deviation of Gaussian noise, as a share
-    noise_kind: NoiseKind = "coordinates"  #: of what the share is: see :func:`with_noise`
-    seed: int = 0  #: of subset and noise
-
-    def __post_init__(self) -> None:
-        if self.crop is not None:
-            low, high = np.array(self.crop[:3]), np.array(self.crop[3:])
-            if len(self.crop) != 6 or not (low < high).all():
-                raise TiskelError(
-                    f"crop must be xmin,ymin,zmin,xmax,ymax,zmax with each min below its max, got {self.crop}"
-                )
-        if self.voxel is not None and not (self.voxel > 0 and np.isfinite(self.voxel)):
-            raise TiskelError(f"voxel must be a positive length in the cloud's units, got {self.voxel}")
-        if not (self.noise >= 0 and np.isfinite(self.noise)):
-            raise TiskelError(f"noise must be a share, 0 or more, got {self.noise}")
-        if self.noise_kind not in get_args(NoiseKind):
-            kinds = ", ".join(get_args(NoiseKind))
-            raise TiskelError(f"the kind of noise must be one of {kinds}, got {self.noise_kind!r}")
-        if self.sample is not None and self.sample < 1:
-            raise TiskelError(f"sample must be a positive number of points, got {self.sample}")
 
 
 def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple[str, ...]]:

@@ -1,0 +1,81 @@
+"""The files that ``tiskel run`` makes of a result; each is a function that returns its bytes."""
+
+import json
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from tiskel.cli.report import report
+from tiskel.cli.roll import summary
+from tiskel.cli.slice import slices_csv
+from tiskel.io.clouds import Cloud
+from tiskel.io.exports import to_json, to_obj, to_swc
+from tiskel.io.mesh_file import dump_mesh
+from tiskel.io.stages.contraction import dump_contraction
+from tiskel.io.stages.heat import dump_heat
+from tiskel.io.stages.roll import to_csv
+from tiskel.io.stages.skeleton import dump_skeleton
+from tiskel.io.stages.surface import dump_surfaces
+from tiskel.pictures.quality import quality_picture
+from tiskel.pictures.rolling import rolling_picture
+from tiskel.pictures.skeleton import skeleton_picture
+from tiskel.pictures.slices import slices_picture
+from tiskel.pictures.stability import stability_picture
+from tiskel.pipeline import PipelineResult
+from tiskel.slicing.mesh import joined_mesh, surface_mesh
+
+Files = dict[str, Callable[[], bytes]]
+
+
+def files_of(result: PipelineResult, cloud: Cloud, *, history: bool) -> Files:
+    """Return stage files, exports, documents and the report, by name."""
+    c, s, source = result.contraction, result.skeleton, cloud.source
+    return {
+        "contraction.ply": lambda: dump_contraction(c, source, history=history),
+        "skeleton.ply": lambda: dump_skeleton(s, source),
+        "skeleton.obj": lambda: to_obj(s),
+        "skeleton.swc": lambda: to_swc(s),
+        "skeleton.json": lambda: to_json(s),
+        "metrics.ply": lambda: dump_heat(result.quality),
+        **_surface_files(result, source),
+        "metrics.json": lambda: _document(result.quality.as_dict()),
+        "stability.json": lambda: _document(result.stability.as_dict()),
+        **_roll_documents(result),
+        "report.html": lambda: report(cloud.name, result).encode(),
+    }
+
+
+def _surface_files(result: PipelineResult, source: dict[str, str]) -> Files:
+    surfaces, runs = result.surfaces, result.trajectories
+    if surfaces is None:
+        return {}
+    files: Files = {
+        "surface.json": lambda: dump_surfaces(surfaces, result.params.surface, source),
+        "surface.ply": lambda: dump_mesh(joined_mesh([surface_mesh(s) for s in surfaces]), source),
+        "slices.csv": lambda: slices_csv(surfaces),
+    }
+    return files | ({"path.csv": lambda: to_csv(runs)} if runs else {})
+
+
+def _roll_documents(result: PipelineResult) -> Files:
+    surface, runs = result.surface, result.trajectories
+    return {"roll.json": lambda: _document(summary(surface.name, runs))} if surface is not None and runs else {}
+
+
+def pictures_of(result: PipelineResult, cloud: Cloud) -> Files:
+    """Draw all pictures and return them by name."""
+    c, s, title = result.contraction, result.skeleton, f"{cloud.name}, {result.contraction.params.method}"
+    drawn = {
+        "skeleton.png": skeleton_picture(s, title),
+        "metrics.png": quality_picture([(title, s.cloud, result.quality)]),
+        "stability.png": stability_picture(c, result.stability, title),
+    }
+    if result.surfaces is not None:
+        drawn["slices.png"] = slices_picture(result.surfaces, title)
+    if result.surface is not None and result.trajectories:
+        drawn["roll.png"] = rolling_picture(result.surface, result.trajectories, title)
+    return {name: partial(bytes, data) for name, data in drawn.items()}
+
+
+def _document(values: dict[str, Any]) -> bytes:
+    return (json.dumps(values, allow_nan=False, indent=1) + "\n").encode()

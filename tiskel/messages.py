@@ -1,0 +1,84 @@
+"""What the stages tell a user: the lines of every result, worded here and nowhere else."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tiskel.contraction import Contraction
+    from tiskel.metrics.stability import Stability
+    from tiskel.rolling.trajectory import Trajectory
+    from tiskel.skeleton import Skeleton
+    from tiskel.slicing.fitted import FittedSurface, Surfaces
+
+
+@dataclass(frozen=True)
+class Message:
+    """One line for a user; a warning where the result may not be what they think it is."""
+
+    text: str
+    warning: bool = False
+
+
+Messages = tuple[Message, ...]
+
+
+def said(lines: Iterable[str]) -> Messages:
+    """Return plain messages."""
+    return tuple(map(Message, lines))
+
+
+def warned(lines: Iterable[str]) -> Messages:
+    """Return warnings, each line once."""
+    return tuple(Message(line, warning=True) for line in dict.fromkeys(lines))
+
+
+def of_contraction(c: "Contraction") -> Messages:
+    """Return the warnings, then how many points are left and why it stopped."""
+    line = (
+        f"contracted {len(c.cloud)} points in {len(c.steps)} steps, {len(c.points)} left "
+        f"({len(c.points) / len(c.cloud):.1%}); {c.status.value}: {c.status.advice}"
+    )
+    return (*warned(c.warnings), Message(line))
+
+
+def of_skeleton(s: "Skeleton") -> Messages:
+    """Return the warnings, then the counts of the graph."""
+    line = (
+        f"{len(s.nodes)} nodes, {len(s.edges)} edges: components {s.components}, loops {s.loops}, ends {s.ends}, "
+        f"joints {s.junctions}, branches {len(s.branches)}, length {s.length:.6g}"
+    )
+    return (*warned(s.warnings), Message(line))
+
+
+def of_stability(stability: "Stability") -> Messages:
+    """Return the verdict."""
+    return (Message(f"{'stable' if stability.stable else 'not stable'}: {stability.reason}"),)
+
+
+def of_surfaces(surfaces: "Surfaces") -> Messages:
+    """Return a line for every surface, why other branches have none, then the warnings."""
+    rejected = (f"branch {name} has no surface: {reason}" for name, reason in surfaces.rejected.items())
+    warnings = (warning for surface in surfaces for warning in surface.warnings)
+    return (*said(map(_surface, surfaces)), *said(rejected), *warned(warnings))
+
+
+def _surface(s: "FittedSurface") -> str:
+    off, cases = s.distance, ", ".join(f"{count} {case}" for case, count in s.cases().items())
+    frame = f"frame {s.frame}" + (f" ({s.note})" if s.note else "")
+    return (
+        f"branch {s.name}: length {s.length:.6g}, radius {s.radius:.4g}, order {s.order}, slices: {cases}; {frame}; "
+        f"distance to {len(s.rows)} points: mean {off['mean']:.3g}, 95 % {off['p95']:.3g}, most {off['max']:.3g}"
+    )
+
+
+def of_runs(runs: "Sequence[Trajectory]") -> Messages:
+    """Return a line for every run of a sphere, then the warnings."""
+    return (*said(map(_run, runs)), *warned(warning for run in runs for warning in run.warnings))
+
+
+def _run(r: "Trajectory") -> str:
+    return (
+        f"{r.params.model} model, sphere of radius {r.radius:.4g} {r.params.side}: {r.status.value}, {r.reason}; "
+        f"way over the object {r.path_object:.6g}, over the sphere {r.path_sphere:.6g}"
+    )

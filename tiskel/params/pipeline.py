@@ -1,0 +1,42 @@
+"""Settings of all stages of one cloud."""
+
+from dataclasses import dataclass, field
+
+from tiskel.params.conditioning import ConditioningParams
+from tiskel.params.methods import ContractionParams, RobustParams
+from tiskel.params.metrics import MetricParams
+from tiskel.params.roll import RollParams
+from tiskel.params.skeleton import SkeletonParams
+from tiskel.params.stability import StabilityParams
+from tiskel.params.surface import SurfaceParams
+
+
+def both_models() -> tuple[RollParams, ...]:
+    """Return the settings of a run in each of the two models."""
+    return RollParams(model="global"), RollParams(model="local")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PipelineParams:
+    """Settings of :func:`tiskel.run_pipeline`, one object for each stage.
+
+    Raises TiskelError where a setting of the curve is none of the method's.
+
+    Examples
+    --------
+    >>> from tiskel import LbcParams, PipelineParams
+    >>> params = PipelineParams(contraction=LbcParams(max_steps=5))
+    >>> params.contraction.max_steps, params.surface.branch, [run.model for run in params.roll]
+    (5, 'all', ['global', 'local'])
+    """
+
+    conditioning: ConditioningParams = field(default_factory=ConditioningParams)
+    contraction: ContractionParams = field(default_factory=RobustParams)
+    skeleton: SkeletonParams = field(default_factory=SkeletonParams)
+    metrics: MetricParams = field(default_factory=MetricParams)
+    stability: StabilityParams = field(default_factory=StabilityParams)
+    surface: SurfaceParams = field(default_factory=SurfaceParams)
+    roll: tuple[RollParams, ...] = field(default_factory=both_models)  #: one run each, over the longest surface
+
+    def __post_init__(self) -> None:
+        self.skeleton.over(self.contraction)

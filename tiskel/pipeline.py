@@ -1,0 +1,217 @@
+"""All stages of one cloud, from what is done to it first to a sphere that rolls on it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy.typing as npt
+
+from tiskel import messages
+from tiskel.arrays import Points, as_points
+from tiskel.contraction import Contraction, contract
+from tiskel.errors import TiskelError
+from tiskel.messages import Message, Messages
+from tiskel.metrics.evaluate import evaluate
+from tiskel.metrics.result import Quality
+from tiskel.metrics.stability import Stability, assess_stability
+from tiskel.params import PipelineParams
+from tiskel.preprocess.conditioning import condition
+from tiskel.rolling.roll import roll
+from tiskel.rolling.trajectory import Trajectory
+from tiskel.skeleton import Skeleton, extract_skeleton
+from tiskel.slicing.fit import fit_surface
+from tiskel.slicing.fitted import FittedSurface, Surfaces
+from tiskel.timing import Stopwatch
+
+T = TypeVar("T")
+Work = Callable[[], T]
+Words = Callable[[T], Messages]  #: what there is to say about a result
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """A part of the pipeline that is done: condition, contract, skeleton, metrics, stability, surface or roll.
+
+    Attributes
+    ----------
+    part : str
+        Its name.
+    result : object
+        What it made; None where a surface or a roll was impossible.
+    messages : tuple of Message
+        What there is to say about it.
+    """
+
+    part: str
+    result: Any
+    messages: Messages
+
+
+Observer = Callable[[Finished], None]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PipelineResult:
+    """What all stages made of one cloud; coordinates in the input's units.
+
+    Attributes
+    ----------
+    points : (n, 3) float64
+        The cloud as it was contracted: what conditioning left of the input.
+    contraction : Contraction
+    skeleton : Skeleton
+    quality : Quality
+    stability : Stability
+    surfaces : Surfaces or None
+        None where no branch could have one; then there are no trajectories.
+    trajectories : tuple of Trajectory
+        The runs over the longest surface; empty where the sphere cannot roll there.
+    reason : str
+        Why there are no surfaces or no trajectories; empty where there are both.
+    seconds : dict
+        Wall time by part, and of the inner parts of contraction and measures as "contract.X" and "metrics.X".
+    messages : tuple of Message
+        What there is to say, warnings included, in the order of the parts.
+    params : PipelineParams
+        The settings.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, make_shape, run_pipeline, shape_graph
+    >>> result = run_pipeline(make_shape(shape_graph("banana"), ShapeParams(count=400))[0])
+    >>> result.skeleton.ends, result.surface.name, result.reason
+    (2, '0', '')
+    """
+
+    points: Points
+    contraction: Contraction
+    skeleton: Skeleton
+    quality: Quality
+    stability: Stability
+    surfaces: Surfaces | None
+    trajectories: tuple[Trajectory, ...]
+    reason: str
+    seconds: dict[str, float]
+    messages: Messages
+    params: PipelineParams
+
+    @property
+    def surface(self) -> FittedSurface | None:
+        """The longest surface, which the sphere rolls on."""
+        return None if self.surfaces is None else self.surfaces.named(None)
+
+
+class _Record:
+    """Times and messages of the parts, each told to the observer as soon as it is done."""
+
+    def __init__(self, observer: Observer) -> None:
+        self.observer, self.watch, self.messages = observer, Stopwatch(), messages.said(())
+
+    def timed(self, part: str, work: Work[T]) -> T:
+        with self.watch.measure(part):
+            return work()
+
+    def tell(self, part: str, result: T, lines: Messages) -> T:
+        self.messages += lines
+        self.observer(Finished(part, result, lines))
+        return result
+
+    def do(self, part: str, work: Work[T], words: Words[T]) -> T:
+        result = self.timed(part, work)
+        return self.tell(part, result, words(result))
+
+    def attempt(self, part: str, work: Work[T], words: Words[T]) -> tuple[T, str] | tuple[None, str]:
+        """Do what may be impossible; return None and the reason where it is."""
+        try:
+            result = self.timed(part, work)
+        except TiskelError as error:
+            what = "rolling" if part == "roll" else part
+            self.tell(part, None, (Message(f"no {what}: {error}"),))
+            return None, str(error)
+        return self.tell(part, result, words(result)), ""
+
+
+def run_pipeline(
+    points: npt.ArrayLike,
+    params: PipelineParams | None = None,
+    weights: npt.ArrayLike | None = None,
+    observer: Observer = lambda finished: None,
+) -> PipelineResult:
+    """Do everything with one cloud: condition, contract, skeleton, measures, stability, surfaces, rolling.
+
+    Nothing is printed or written. Where no branch can have a surface, or the
+    sphere cannot roll, the result says why and holds what there is.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The cloud, in any unit.
+    params : PipelineParams, optional
+        The settings of all stages.
+    weights : (n,) array, optional
+        See :func:`tiskel.contract`; not with conditioning that changes the number of points.
+    observer : callable, optional
+        Called after each part with a :class:`tiskel.pipeline.Finished`. What it raises ends the run.
+
+    Returns
+    -------
+    PipelineResult
+
+    Raises
+    ------
+    TiskelError
+        As :func:`tiskel.condition`, :func:`tiskel.contract` and :func:`tiskel.extract_skeleton`.
+
+    Examples
+    --------
+    >>> from tiskel import LbcParams, PipelineParams, ShapeParams, make_shape, run_pipeline, shape_graph
+    >>> cloud = make_shape(shape_graph("capsule"), ShapeParams(count=400))[0]
+    >>> parts = []
+    >>> result = run_pipeline(
+    ...     cloud, PipelineParams(contraction=LbcParams(max_steps=3)), observer=lambda done: parts.append(done.part)
+    ... )
+    >>> parts
+    ['condition', 'contract', 'skeleton', 'metrics', 'stability', 'surface', 'roll']
+    >>> len(result.contraction.steps), len(result.trajectories), result.reason
+    (3, 2, '')
+    """
+    chosen, record = params or PipelineParams(), _Record(observer)
+    ready, _ = record.do(
+        "condition", lambda: condition(as_points(points), chosen.conditioning), lambda r: messages.said(r[1])
+    )
+    c = record.do("contract", lambda: contract(ready, chosen.contraction, weights), messages.of_contraction)
+    s = record.do("skeleton", lambda: extract_skeleton(c, chosen.skeleton), messages.of_skeleton)
+    quality = record.do("metrics", lambda: evaluate(s, params=chosen.metrics), lambda _: ())
+    stability = record.do("stability", lambda: assess_stability(c, chosen.stability), messages.of_stability)
+    surfaces, trajectories, reason = _surfaces_and_runs(s, chosen, record)
+    return PipelineResult(
+        points=ready,
+        contraction=c,
+        skeleton=s,
+        quality=quality,
+        stability=stability,
+        surfaces=surfaces,
+        trajectories=trajectories,
+        reason=reason,
+        seconds=record.watch.seconds | _inner_seconds(c, quality),
+        messages=record.messages,
+        params=chosen,
+    )
+
+
+def _surfaces_and_runs(
+    skeleton: Skeleton, params: PipelineParams, record: _Record
+) -> tuple[Surfaces | None, tuple[Trajectory, ...], str]:
+    """Fit surfaces and roll over the longest; where that is impossible, return the reason and what there is."""
+    surfaces, reason = record.attempt("surface", lambda: fit_surface(skeleton, params.surface), messages.of_surfaces)
+    if surfaces is None:
+        return None, (), reason
+    longest = surfaces.named(None)
+    runs, reason = record.attempt("roll", lambda: tuple(roll(longest, r) for r in params.roll), messages.of_runs)
+    return surfaces, runs or (), reason
+
+
+def _inner_seconds(c: Contraction, quality: Quality) -> dict[str, float]:
+    steps = {f"contract.{part}": sum(t.seconds.get(part, 0) for t in c.steps) for part in c.steps[0].seconds}
+    measures = {f"metrics.{part}": seconds for part, seconds in quality.seconds.items()}
+    return steps | {"contract.rings": c.ring_seconds} | measures
