@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from plyfile import PlyData, PlyElement, PlyParseError
+from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
 from tiskel.errors import TiskelError
 from tiskel.version import version
@@ -36,13 +36,17 @@ def parse(data: bytes, name: str) -> PlyData:
     """
     stream = io.BytesIO(data)
     try:
-        header = PlyData._parse_header(io.BytesIO(data))
-        for element in header.elements:
+        ply = PlyData._parse_header(stream)
+        for element in ply.elements:
             if element.count * SMALLEST_ROW > len(data):
                 raise TiskelError(
                     f"{name}: the header promises {element.count} rows of {element.name}, the file is smaller"
                 )
-        ply = PlyData.read(stream)
+        if ply.text or any(isinstance(kind, PlyListProperty) for element in ply for kind in element.properties):
+            stream.seek(0)
+            ply = PlyData.read(stream)
+        else:
+            _read_tables(ply, data, stream)
     except PlyParseError as error:
         raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
     except (ValueError, MemoryError, UnicodeDecodeError, OverflowError, TypeError, KeyError, EOFError) as error:
@@ -51,6 +55,20 @@ def parse(data: bytes, name: str) -> PlyData:
     if surplus:
         raise TiskelError(f"{name}: {surplus} follow the last row that the header promises; export it again")
     return ply
+
+
+def _read_tables(ply: PlyData, data: bytes, stream: io.BytesIO) -> None:
+    """Fill the elements of a binary file without lists, each at once; plyfile reads a stream row by row.
+
+    The stream stands behind the header before, and behind the last row after;
+    the tables are views of the data, not to be written to.
+    """
+    for element in ply.elements:
+        kind = element.dtype(ply.byte_order)
+        if stream.tell() + element.count * kind.itemsize > len(data):
+            raise PlyParseError(f"element {element.name!r}: early end-of-file")
+        element.data = np.frombuffer(data, kind, element.count, stream.tell())
+        stream.seek(element.count * kind.itemsize, io.SEEK_CUR)
 
 
 def _surplus(ply: PlyData, data: bytes, stream: io.BytesIO) -> str:
@@ -109,9 +127,13 @@ def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -
     comments = [f"tiskel {version()} {stage}"]
     everything = {"format": FORMAT, **facts}
     comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in everything.items()]
-    out = io.BytesIO()
-    PlyData(elements, text=False, byte_order="<", comments=comments).write(out)
-    return out.getvalue()
+    file = PlyData(elements, text=False, byte_order="<", comments=comments)
+    if any(isinstance(kind, PlyListProperty) for element in elements for kind in element.properties):
+        out = io.BytesIO()
+        file.write(out)
+        return out.getvalue()
+    rows = (element.data.astype(element.dtype("<"), copy=False).data for element in elements)
+    return b"".join([file.header.encode("ascii"), b"\n", *rows])
 
 
 def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
@@ -159,6 +181,12 @@ VERB = {"contraction": "contract", "skeleton": "skeleton"}
 
 def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -> npt.NDArray[np.float64]:
     """Return three named columns of a table of n rows as (n, 3) float64."""
+    fields: Mapping[str, Any] = table.dtype.fields or {}
+    kinds = [(fields[name][0], fields[name][1]) for name in names]
+    side_by_side = [(np.dtype("<f8"), kinds[0][1] + 8 * i) for i in range(3)]
+    if kinds == side_by_side and table.ndim == 1 and table.flags.c_contiguous and len(table):  # one pass, not three
+        start = table.view(np.uint8).reshape(len(table), -1)[:, kinds[0][1] : kinds[0][1] + 24]
+        return np.ascontiguousarray(start).view(np.float64)
     return np.stack([np.asarray(table[name], np.float64) for name in names], axis=1).reshape(-1, 3)
 
 

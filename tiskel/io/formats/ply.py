@@ -39,7 +39,7 @@ def read(data: bytes, name: str) -> Parsed:
     table = file[holder].data
     axes = _axes(table, holder, name)
     columns = [key for key in table.dtype.names or () if key not in axes and table.dtype[key].kind != "O"]
-    return Parsed(ply.points_of(table, axes), _triangles(file, name), {key: table[key] for key in columns})
+    return Parsed(ply.points_of(table, axes), _triangles(file, name), {key: table[key].copy() for key in columns})
 
 
 def write(points: Points) -> bytes:
