@@ -22,7 +22,7 @@ class Skeleton(CurveGraph):
 
     Attributes
     ----------
-    nodes, edges, radii, bridged
+    nodes, edges, radii, bridged, radius_sources
         The curve, see :class:`tiskel.CurveGraph`. Radii are those of the fitted round cones by robust; else the
         mean distance of a node's points of the cloud to it, 0 for a node without points.
     node_of_point : (n,) int32
@@ -129,6 +129,7 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
         edges=made.graph.edges,
         radii=made.graph.radii / frame.scale,
         bridged=made.graph.bridged,
+        radius_sources=made.graph.radius_sources,
         node_of_point=made.node_of_point,
         cloud=c.cloud,
         input_rows=c.input_rows,

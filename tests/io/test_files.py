@@ -82,6 +82,7 @@ def test_a_skeleton_comes_back_whole(skeleton: Skeleton, tmp_path: Path) -> None
         "edges",
         "radii",
         "bridged",
+        "radius_sources",
         "node_of_point",
         "cloud",
         "input_rows",

@@ -26,7 +26,7 @@ from tiskel.arrays import Indices, Points, diagonal, normalisation
 from tiskel.gallery.catalogue import SHAPES
 from tiskel.gallery.random_graphs import random_graph
 from tiskel.geometry.curve import curve_samples
-from tiskel.geometry.graph import tidy_edges
+from tiskel.geometry.graph import RadiusSource, tidy_edges
 from tiskel.geometry.round_cones import union_distance
 from tiskel.geometry.solid import solid_of
 from tiskel.methods.robust.checks import Candidate, warnings_of
@@ -178,6 +178,18 @@ def test_a_cut_is_bridged_and_said() -> None:
     s = skeleton_of(cloud[np.abs(cloud[:, 2]) > 0.2])
     assert (s.components, s.ends) == (1, 2)
     assert any("1 gaps in the scan were bridged" in warning for warning in s.warnings)
+
+
+def test_radii_say_what_they_are_worth() -> None:
+    """Those on a bridge come from its ends; those of twigs with two points around them are bounds."""
+    cloud = make_shape(shape_graph("capsule"), ShapeParams(count=3000))[0]
+    s = skeleton_of(cloud[np.abs(cloud[:, 2]) > 0.25])
+    modelled = s.radius_sources == RadiusSource.MODELLED
+    assert modelled.any()
+    assert (np.abs(s.nodes[modelled, 2]) < 0.3).all()
+    assert (s.radius_sources[~modelled] == RadiusSource.MEASURED).all()
+    thin = skeleton_of(make_shape(shape_graph("tree"), ShapeParams(count=2000))[0])
+    assert (thin.radius_sources == RadiusSource.BOUNDED).mean() > 0.1
 
 
 def test_capsules_end_to_end_are_not_bridged() -> None:

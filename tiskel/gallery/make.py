@@ -6,6 +6,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.gallery.catalogue import SHAPES
+from tiskel.geometry.graph import RadiusSource
 from tiskel.geometry.round_cones import ConeGraph, sample_union
 from tiskel.params import ShapeParams
 from tiskel.skeleton import Skeleton
@@ -113,6 +114,7 @@ def analytic_skeleton(shape: ConeGraph, cloud: Points) -> Skeleton:
         nodes=shape.nodes,
         edges=shape.edges,
         radii=shape.radii,
+        radius_sources=np.full(len(shape.nodes), RadiusSource.MEASURED, np.uint8),
         node_of_point=cKDTree(shape.nodes).query(cloud)[1].astype(np.int32),
         cloud=cloud,
         input_rows=everyone,

@@ -2,13 +2,31 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
+
+
+class RadiusSource(IntEnum):
+    """What the radius of a node is worth; the numbers stand in files.
+
+    Examples
+    --------
+    >>> from tiskel import RadiusSource
+    >>> RadiusSource.MODELLED.name
+    'MODELLED'
+    """
+
+    UNKNOWN = 0  #: nobody said
+    MEASURED = 1  #: points about the node determine it
+    BOUNDED = 2  #: the body is thinner than its points can tell: it is at most about so much
+    MODELLED = 3  #: no points, as on a bridge over a gap: taken from the nodes beside it
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +43,8 @@ class CurveGraph:
         How thick the body is about each node; NaN where that is not known.
     bridged : (e,) bool
         Which edges were laid over a gap; the others follow points.
+    radius_sources : (v,) uint8
+        What each radius is worth, see :class:`RadiusSource`.
 
     Examples
     --------
@@ -41,12 +61,15 @@ class CurveGraph:
     edges: Indices
     radii: Numbers = field(default_factory=lambda: np.zeros(0))
     bridged: Mask = field(default_factory=lambda: np.zeros(0, np.bool_))
+    radius_sources: npt.NDArray[np.uint8] = field(default_factory=lambda: np.zeros(0, np.uint8))
 
     def __post_init__(self) -> None:
         if len(self.radii) != len(self.nodes):
             object.__setattr__(self, "radii", np.full(len(self.nodes), np.nan))
         if len(self.bridged) != len(self.edges):
             object.__setattr__(self, "bridged", np.zeros(len(self.edges), np.bool_))
+        if len(self.radius_sources) != len(self.nodes):
+            object.__setattr__(self, "radius_sources", np.full(len(self.nodes), RadiusSource.UNKNOWN, np.uint8))
 
     @cached_property
     def degrees(self) -> Indices:

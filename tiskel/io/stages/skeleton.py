@@ -1,7 +1,8 @@
 """The stage file ``skeleton.ply``, format 2: a line set that other tools read, and all that later stages need.
 
-Elements: ``vertex`` (x y z radius branch degree; branch is -1 for a junction,
-which belongs to several) and ``edge`` (vertex1 vertex2); ``edge_source`` (bridged: 1
+Elements: ``vertex`` (x y z radius branch degree radius_source; branch is -1 for a
+junction, which belongs to several; radius_source is a number of
+:class:`tiskel.RadiusSource`) and ``edge`` (vertex1 vertex2); ``edge_source`` (bridged: 1
 where an edge was laid over a gap, 0 where it follows points; trimesh reads no edges
 of more than two properties); ``branch``, how many nodes each has, and
 ``branch_node``, these nodes one branch after the other (trimesh gives up on lists
@@ -14,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tiskel.arrays import Indices, Mask
 from tiskel.errors import TiskelError
@@ -59,6 +61,7 @@ def write_skeleton(target: str | Path, skeleton: Skeleton, source: dict[str, str
 def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
     """Return the bytes of a stage file, the same for the same skeleton; see :func:`write_skeleton`."""
     vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radii, "branch": s.branch_of_node(), "degree": s.degrees}
+    vertex["radius_source"] = s.radius_sources
     contracted: dict[str, Any] = {**ply.xyz(s.contracted), **ply.xyz(s.origin, ORIGIN), "row": s.rows}
     contracted["node"] = s.node_of_point[s.rows]
     cloud: dict[str, Any] = {**ply.xyz(s.cloud), "row": s.input_rows, "node": s.node_of_point}
@@ -132,6 +135,7 @@ def parse_skeleton(data: bytes, name: str) -> Skeleton:
             edges=_edges(edge, len(vertex)),
             radii=np.array(vertex["radius"], np.float64),
             bridged=_bridged(file, len(edge)),
+            radius_sources=_sources(vertex),
             node_of_point=_nodes(cloud["node"], len(vertex)),
             cloud=ply.points_of(cloud),
             input_rows=np.array(cloud["row"], np.int32),
@@ -143,6 +147,12 @@ def parse_skeleton(data: bytes, name: str) -> Skeleton:
         )
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise TiskelError(f"{name} is a damaged skeleton file: {error}; run tiskel skeleton again") from None
+
+
+def _sources(vertex: Any) -> npt.NDArray[np.uint8]:
+    """Return what the radii are worth; unknown in a file of format 1."""
+    known = "radius_source" in (vertex.dtype.names or ())
+    return np.array(vertex["radius_source"], np.uint8) if known else np.zeros(len(vertex), np.uint8)
 
 
 def _bridged(file: Any, count: int) -> Mask:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tiskel.arrays import Indices, Points, diagonal
 from tiskel.errors import TiskelError
-from tiskel.geometry.graph import CurveGraph, node_radii
+from tiskel.geometry.graph import CurveGraph, RadiusSource, node_radii
 from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edges
 from tiskel.methods.laplacian.sampling import front_samples
 from tiskel.methods.trace import MethodCurve, Trace
@@ -31,7 +31,9 @@ def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:
     joined = inherited_edges(trace.rings, owner, trace.points[samples])
     nodes, edges, into = collapse_triangles(trace.points[samples], joined)
     node_of_point = into[owner][trace.survivor_of()]
-    graph = CurveGraph(nodes, edges, node_radii(nodes, trace.cloud, node_of_point))
+    owned = np.isin(np.arange(len(nodes)), node_of_point)
+    sources = np.where(owned, RadiusSource.MEASURED, RadiusSource.UNKNOWN).astype(np.uint8)
+    graph = CurveGraph(nodes, edges, node_radii(nodes, trace.cloud, node_of_point), radius_sources=sources)
     warnings = (SINGLE,) if len(nodes) <= 1 else ()
     if not params.raw:
         graph, node_of_point = without_spurs(graph, trace.cloud, node_of_point)
@@ -46,5 +48,8 @@ def without_spurs(graph: CurveGraph, cloud: Points, node_of_point: Indices) -> t
     place[kept] = np.arange(len(kept), dtype=np.int32)
     left = (place[graph.edges] >= 0).all(axis=1)
     nodes, owner = graph.nodes[kept], place[into[node_of_point]]
-    radii = node_radii(nodes, cloud, owner)
-    return replace(graph, nodes=nodes, edges=place[graph.edges[left]], radii=radii, bridged=graph.bridged[left]), owner
+    fewer = replace(
+        graph, nodes=nodes, edges=place[graph.edges[left]], radii=node_radii(nodes, cloud, owner),
+        bridged=graph.bridged[left], radius_sources=graph.radius_sources[kept],
+    )  # fmt: skip
+    return fewer, owner

@@ -24,7 +24,7 @@ from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.solid import solid_of
-from tiskel.methods.robust.checks import Candidate, warnings_of
+from tiskel.methods.robust.checks import Candidate, radius_sources, warnings_of
 from tiskel.methods.robust.fronts import contract_by_fronts, further_front
 from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
@@ -82,5 +82,5 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
         node[lost] = cKDTree(curve.nodes).query(network.points[lost])[1]
     contracted = trace.points.copy()
     contracted[fit.rows] = fit.places @ network.axes
-    graph = CurveGraph(curve.nodes @ network.axes, curve.edges, curve.radii, curve.bridged)
+    graph = CurveGraph(curve.nodes @ network.axes, curve.edges, curve.radii, curve.bridged, radius_sources(best))
     return MethodCurve(graph, node[trace.survivor_of()], contracted, warnings_of(best))

@@ -4,9 +4,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.graph import RadiusSource
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.fit import ConeFit
@@ -80,6 +82,16 @@ class Candidate:
         outside = (self.winding < OUTSIDE_SCORE) & thick
         far = np.abs(self.fit.residual) > np.maximum(FAR * self.fit.radii, spacing)
         return off + float(outside.mean()) + (float(far.mean()) if len(far) else 0.0)
+
+
+def radius_sources(found: Candidate) -> npt.NDArray[np.uint8]:
+    """Return (v,) what the radius of each node is worth: thin ones are bounds, those on bridges come from a model."""
+    curve = found.curve
+    sources = np.full(len(curve.nodes), RadiusSource.MEASURED, np.uint8)
+    sources[curve.radii < SPARSE * found.network.spacing] = RadiusSource.BOUNDED
+    bridges = np.bincount(curve.edges[curve.bridged].ravel(), minlength=len(curve.nodes))
+    sources[(bridges > 0) & (bridges == curve.degrees)] = RadiusSource.MODELLED
+    return sources
 
 
 def warnings_of(found: Candidate) -> tuple[str, ...]:
