@@ -1,4 +1,4 @@
-"""Checks of arrays at the door of the library."""
+"""The types of arrays, and checks of arrays at the door of the library."""
 
 from dataclasses import dataclass
 
@@ -8,10 +8,17 @@ import numpy.typing as npt
 from tiskel.errors import TiskelError
 from tiskel.params import MIN_POINTS, SIDE, Normalisation
 
-Points = npt.NDArray[np.float64]  #: shape (n, 3)
-Indices = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
+# mypy tells them apart by dtype and number of axes, not by how long an axis is: Points and Table are one type to it.
+Numbers = np.ndarray[tuple[int], np.dtype[np.float64]]  #: shape (n,); a vector (3,) too
+Points = np.ndarray[tuple[int, int], np.dtype[np.float64]]  #: shape (n, 3)
+Table = np.ndarray[tuple[int, int], np.dtype[np.float64]]  #: shape (n, k): columns, matrices, places in a plane
+Stack = np.ndarray[tuple[int, int, int], np.dtype[np.float64]]  #: shape (n, k, m): a table for each of n
+Floats = npt.NDArray[np.float64]  #: any number of axes, as the docstring says
+Indices = np.ndarray[tuple[int], np.dtype[np.int32]]  #: shape (n,): rows of something
+Edges = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (e, 2), or (e, 3) for triangles
+Lists = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (n, k): a row of rows for each of n
+Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]  #: shape (n,)
+Masks = np.ndarray[tuple[int, int], np.dtype[np.bool_]]  #: shape (n, k)
 
 FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or a line to rounding
 

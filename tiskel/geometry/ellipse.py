@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Table
 
 LEAST = 5  # points that determine a conic
 FLAT = 1e-8  # relative: a scatter matrix worse conditioned says nothing
@@ -18,7 +18,7 @@ class Ellipse:
     axes: Numbers
 
 
-def fit_ellipse(points: Numbers) -> Ellipse | None:
+def fit_ellipse(points: Table) -> Ellipse | None:
     """Return the ellipse of least algebraic distance to points (n, 2), or None where there is none.
 
     Fitzgibbon, Pilu and Fisher (PAMI 1999), in the numerically stable form of
@@ -35,7 +35,7 @@ def fit_ellipse(points: Numbers) -> Ellipse | None:
     return None if found is None else Ellipse(found[0] * scale + mean, found[1] * scale)
 
 
-def _conic(p: Numbers) -> Numbers | None:
+def _conic(p: Table) -> Numbers | None:
     """Return a, b, c, d, e, f of a x^2 + b x y + c y^2 + d x + e y + f = 0."""
     x, y = p.T
     quadratic, linear = np.stack([x * x, x * y, y * y], axis=1), np.stack([x, y, np.ones_like(x)], axis=1)

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Points
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class CurveGraph:
     """
 
     nodes: Points
-    edges: Indices
+    edges: Edges
     radii: Numbers = field(default_factory=lambda: np.zeros(0))
     bridged: Mask = field(default_factory=lambda: np.zeros(0, np.bool_))
 
@@ -106,7 +106,7 @@ class CurveGraph:
         return [sorted(others) for others in around]
 
     @cached_property
-    def passages(self) -> Indices:
+    def passages(self) -> Lists:
         """(d, 3) one neighbour, the node, and the other neighbour, of every node with exactly two."""
         found = [(o[0], node, o[1]) for node, o in enumerate(self.neighbours) if len(o) == 2]
         return np.array(found, np.int32).reshape(-1, 3)
@@ -139,7 +139,7 @@ class CurveGraph:
         return into
 
 
-def tidy_edges(edges: Indices) -> Indices:
+def tidy_edges(edges: Edges) -> Edges:
     """Return edges with the lower node first, each once, none from a node to itself."""
     ordered = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
     return np.unique(ordered[ordered[:, 0] != ordered[:, 1]], axis=0).reshape(-1, 2)
@@ -152,7 +152,7 @@ def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
     return np.asarray(np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1))
 
 
-def connected_sets(count: int, links: Indices) -> list[Indices]:
+def connected_sets(count: int, links: Edges) -> list[Indices]:
     """Return the connected sets of things 0 to count that links (l, 2) join, each ascending."""
     graph = sparse.coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
     sets, label = connected_components(graph, directed=False)

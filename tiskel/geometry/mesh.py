@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Points
 from tiskel.errors import TiskelError
 
 
-def sample_mesh(vertices: Points, faces: Indices, count: int, seed: int = 0) -> Points:
+def sample_mesh(vertices: Points, faces: Edges, count: int, seed: int = 0) -> Points:
     """Return points (count, 3), uniform by area on the triangles (m, 3), the same for the same seed."""
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2

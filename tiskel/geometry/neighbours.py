@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Lists, Numbers, Points, Stack, Table
 from tiskel.geometry.rings import Rings
 
-Axes = Numbers  #: shape (n, 3, 3), rows by descending eigenvalue
+Axes = Stack  #: shape (n, 3, 3), rows by descending eigenvalue
 
 
-def nearest_neighbours(points: Points, k: int) -> tuple[Indices, Numbers]:
+def nearest_neighbours(points: Points, k: int) -> tuple[Lists, Table]:
     """Return the k nearest of each point, itself included.
 
     Parameters
@@ -70,7 +70,7 @@ def morton_curve(points: Points) -> MortonCurve:
     return MortonCurve(np.ascontiguousarray(points[order]), order, codes[order], low, per_length)
 
 
-def principal_axes(points: Points, neighbours: Indices) -> tuple[Numbers, Axes]:
+def principal_axes(points: Points, neighbours: Lists) -> tuple[Table, Axes]:
     """Return eigenvalues (n, 3), descending, and eigenvectors (n, 3, 3), as rows, of neighbourhood covariances."""
     from tiskel.kernels import axes as kernel
 
@@ -80,7 +80,7 @@ def principal_axes(points: Points, neighbours: Indices) -> tuple[Numbers, Axes]:
     return values, axes
 
 
-def one_rings(points: Points, centres: Indices, candidates: Indices, planes: Numbers) -> Rings:
+def one_rings(points: Points, centres: Indices, candidates: Lists, planes: Stack) -> Rings:
     """Return the Delaunay one-ring of each centre among its candidates, projected on a plane.
 
     Parameters
@@ -111,7 +111,7 @@ def one_rings(points: Points, centres: Indices, candidates: Indices, planes: Num
     return Rings(np.ascontiguousarray(members[:, :width]), sizes, closed)
 
 
-def surroundings(points: Points, k: int) -> tuple[Indices, Axes, Rings]:
+def surroundings(points: Points, k: int) -> tuple[Lists, Axes, Rings]:
     """Return the k nearest neighbours of every point, their principal axes, and the one-rings on the leading two."""
     neighbours, _ = nearest_neighbours(points, k)
     _, axes = principal_axes(points, neighbours)

@@ -16,7 +16,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Indices, Lists, Mask, Numbers, Points
 from tiskel.geometry.neighbours import morton_curve, principal_axes, surroundings
 from tiskel.geometry.rings import Rings
 from tiskel.params import published_neighbours
@@ -55,7 +55,7 @@ class OrientedCloud:
         return self.consistency >= TRUSTED
 
     @cached_property
-    def _blocks(self) -> tuple[Points, ...]:
+    def _blocks(self) -> tuple[Points, Points, Numbers, Points, Points, Numbers]:
         """Return what the kernel sums over: points along the Morton curve, and blocks of them."""
         from tiskel.kernels.winding import BLOCK
 
@@ -130,7 +130,7 @@ def ring_areas(points: Points, rings: Rings) -> Numbers:
     return areas
 
 
-def propagated_signs(neighbours: Indices, normals: Points) -> tuple[Numbers, Indices]:
+def propagated_signs(neighbours: Lists, normals: Points) -> tuple[Numbers, Indices]:
     """Return signs (n,) that make neighbouring normals agree, and the connected part (n,) each sign holds in.
 
     Along the minimum spanning tree of 1 - |n_i . n_j|, so that signs pass

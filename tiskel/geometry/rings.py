@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Indices, Lists, Masks, Numbers, Points
 
 
 @dataclass(frozen=True)
@@ -19,14 +19,14 @@ class Rings:
     closed : (n,) int32, 1 where the last member connects to the first.
     """
 
-    members: Indices
+    members: Lists
     sizes: Indices
     closed: Indices
 
     def __len__(self) -> int:
         return len(self.sizes)
 
-    def mask(self) -> Mask:
+    def mask(self) -> Masks:
         """Return which entries of members are filled."""
         return np.arange(self.members.shape[1]) < self.sizes[:, None]
 

@@ -8,8 +8,9 @@ would see of it.
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Mask, Numbers, Points
 from tiskel.geometry.graph import CurveGraph
 
 BATCH = 200_000  # candidates per round: bounds the memory, not the result
@@ -80,12 +81,12 @@ def _visible(shape: ConeGraph, edge: int, count: int, generator: np.random.Gener
     return points[keep]
 
 
-def _cone(shape: ConeGraph, edge: int) -> tuple[Points, Points, float, float]:
+def _cone(shape: ConeGraph, edge: int) -> tuple[Numbers, Numbers, float, float]:
     (a, b), (ra, rb) = shape.nodes[shape.edges[edge]], shape.radii[shape.edges[edge]]
     return a, b, float(ra), float(rb)
 
 
-def _areas(a: Points, b: Points, ra: float, rb: float) -> tuple[float, float, float]:
+def _areas(a: Numbers, b: Numbers, ra: float, rb: float) -> tuple[float, float, float]:
     """Return the areas of the cap at a, the slanted side, and the cap at b."""
     length = float(np.linalg.norm(b - a))
     if length <= abs(ra - rb):
@@ -96,8 +97,8 @@ def _areas(a: Points, b: Points, ra: float, rb: float) -> tuple[float, float, fl
 
 
 def sample_cone(
-    a: Points, b: Points, ra: float, rb: float, count: int, generator: np.random.Generator
-) -> tuple[Points, Indices]:
+    a: Numbers, b: Numbers, ra: float, rb: float, count: int, generator: np.random.Generator
+) -> tuple[Points, npt.NDArray[np.intp]]:
     """Return points (count, 3) uniform on a round cone, and for each the end whose ball it lies on, -1 for the side."""
     areas = np.array(_areas(a, b, ra, rb))
     part = np.repeat(np.arange(3), generator.multinomial(count, areas / areas.sum()))
@@ -131,7 +132,7 @@ def _even_pairs(count: int, generator: np.random.Generator) -> tuple[Numbers, Nu
     return first, second
 
 
-def _frame(axis: Points) -> tuple[Points, Points]:
+def _frame(axis: Numbers) -> tuple[Numbers, Numbers]:
     """Return two orthonormal directions across an axis."""
     least = np.eye(3)[np.abs(axis).argmin()]
     u = np.cross(axis, least)

@@ -10,10 +10,9 @@ not agree on is not decided.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Stack
 from tiskel.geometry.oriented import OrientedCloud, checked
 
 LEVELS = (0.25, 0.3, 0.4)  # winding numbers; noise outside stays below, tubes of one spacing's radius rise above
@@ -23,7 +22,7 @@ MAX_CELLS = 1_000_000
 COARSEST = 2.5  # spacings; on a coarser grid thin parts would be missed
 PROBED = 16384  # points; of larger clouds so many are taken
 
-Grid = npt.NDArray[np.bool_]
+Grid = np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,14 +68,14 @@ def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
     return found[0], ""
 
 
-def _grid_step(extent: Points, spacing: float) -> float:
+def _grid_step(extent: Numbers, spacing: float) -> float:
     """Return the side of the cells: the spacing's multiple, or what keeps the grid within its limit."""
     step = STEP * spacing
     cells = float(np.prod(extent / step + 4))
     return step * float(np.cbrt(max(1.0, cells / MAX_CELLS)))
 
 
-def _winding_grid(surface: OrientedCloud, low: Points, high: Points, step: float) -> Numbers:
+def _winding_grid(surface: OrientedCloud, low: Numbers, high: Numbers, step: float) -> Stack:
     """Return winding numbers on a grid: at every eighth place, and at all places where it matters.
 
     These are the ones near the surface, and those between an inside and an

@@ -6,11 +6,11 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Floats, Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.params import Solver
 
-Factorisation = Callable[[Points], Points]
+Factorisation = Callable[[Floats], Floats]  #: right-hand side (n,) or (n, c) to solution
 
 
 class SingularStep(Exception):
@@ -50,7 +50,7 @@ def _cholmod(normal: sparse.csc_array) -> Factorisation:
     lower = sparse.coo_array(sparse.tril(normal))
     symmetric = spmatrix(lower.data, *(axis.astype(int) for axis in lower.coords), normal.shape)
 
-    def solve(right: Points) -> Points:
+    def solve(right: Floats) -> Floats:
         out = matrix(np.asfortranarray(right))
         try:
             cholmod.linsolve(symmetric, out)

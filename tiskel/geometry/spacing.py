@@ -9,12 +9,12 @@ nearest other is half of it; on a square lattice it is 0.89 of the lattice's sid
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Points, Table
 
 NEIGHBOURS = 4  # others that are counted: the four sides of a square lattice
 
 
-def spacings_from(squares: Numbers) -> Numbers:
+def spacings_from(squares: Table) -> Numbers:
     """Return (n,) the spacing about each point.
 
     Parameters

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Lists, Numbers, Points
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.spacing import spacings_from
 
@@ -43,7 +43,7 @@ def cap_points(points: Points) -> Points:
     return np.concatenate([np.empty((0, 3)), *discs])
 
 
-def widest_gaps(points: Points, neighbours: Indices) -> Numbers:
+def widest_gaps(points: Points, neighbours: Lists) -> Numbers:
     """Return the widest angle between successive neighbours of each point, on the plane of its neighbourhood.
 
     Parameters
@@ -68,7 +68,7 @@ def widest_gaps(points: Points, neighbours: Indices) -> Numbers:
     return np.asarray(np.fmax(np.nanmax(np.diff(angles, axis=1), axis=1), angles[:, 0] + 2 * np.pi - last))
 
 
-def _groups(boundary: Indices, neighbours: Indices) -> list[Indices]:
+def _groups(boundary: Indices, neighbours: Lists) -> list[Indices]:
     """Return the connected groups of boundary points in the neighbour graph."""
     place = np.full(len(neighbours), -1)
     place[boundary] = np.arange(len(boundary))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Floats, Numbers, Points, Stack, Table
 from tiskel.rolling.equations import controllability, margin
 from tiskel.rolling.models import RollingModel, tube_of
 from tiskel.rolling.solution import Solution
@@ -14,8 +14,8 @@ FINE, LEAST = 2000, 10  # places along the ways whose lengths are compared: at l
 
 
 def read(
-    surface: ParametricSurface, model: RollingModel, sigma: float, radius: float, y: Numbers, psi_start: float
-) -> dict[str, Numbers]:
+    surface: ParametricSurface, model: RollingModel, sigma: float, radius: float, y: Table, psi_start: float
+) -> dict[str, Floats]:
     """Return the columns of a trajectory from solved states (n, 6).
 
     The quaternions are those of F^T Q; Q is reported with the frame of the
@@ -64,11 +64,11 @@ def fine_times(steps: Numbers) -> Numbers:
     return np.interp(np.arange((len(steps) - 1) * pieces + 1) / pieces, np.arange(len(steps)), steps)
 
 
-def frames_of(forms: Forms) -> Numbers:
+def frames_of(forms: Forms) -> Stack:
     """Return (n, 3, 3), x, y and z as columns."""
     return np.stack([columns(side) for side in forms[:3]], axis=-1)
 
 
-def columns(vector: Vector) -> Numbers:
+def columns(vector: Vector) -> Points:
     """Return (n, 3)."""
     return np.stack(np.broadcast_arrays(*vector), axis=-1)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Edges, Numbers, Points, Stack
 from tiskel.geometry.bspline import Strip
 from tiskel.geometry.ellipse import fit_ellipse
 from tiskel.slicing.fitted import FittedSurface
@@ -29,7 +29,7 @@ class Mesh:
     """
 
     vertices: Points
-    triangles: Indices
+    triangles: Edges
 
 
 def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
@@ -86,7 +86,7 @@ def distances_to_mesh(points: Points, mesh: Mesh) -> Numbers:
     return best
 
 
-def _to_triangles(points: Points, corners: Numbers) -> Numbers:
+def _to_triangles(points: Points, corners: Stack) -> Numbers:
     """Return (k,) the distances of points to triangles (k, 3, 3), one each."""
     sides = np.roll(corners, -1, axis=1) - corners
     offset = points[:, None] - corners

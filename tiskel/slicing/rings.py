@@ -7,7 +7,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Numbers, Points, Table
 from tiskel.geometry.bspline import Strip
 from tiskel.surfaces.tube import Moving, moving_frame
 
@@ -87,7 +87,7 @@ def cut(
     return found
 
 
-def ring_of(plane: Numbers, link: float) -> Indices:
+def ring_of(plane: Table, link: float) -> Indices:
     """Return which points of a section are the ring around its centre.
 
     Of the parts that hang together, the one that is nearest in most directions,

@@ -11,7 +11,7 @@ import cmath
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -120,7 +120,7 @@ class Tube:
     def at(self, u: Scalar, v: Scalar) -> tuple[Moving, Radius]:
         """Return frame and radius at numbers u and v, or at arrays of one shape."""
         if np.ndim(v) == 0 and np.ndim(u) == 0:
-            rows = self._strip.at(float(v)).tolist()
+            rows: list[Any] = self._strip.at(float(v)).tolist()
             p, m = ([tuple(row[i : i + 3]) for row in rows] for i in (0, 3))
             return moving_frame(p, m), radius_of([row[6:] for row in rows], cmath.exp(1j * u))
         u, v = np.broadcast_arrays(u, v)

@@ -3,11 +3,11 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Indices, Numbers, Points
 from tiskel.geometry.rings import Rings
 
 
-def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Indices:
+def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Edges:
     """Return edges (e, 2) between samples, lower index first, sorted.
 
     For each point the first member of its ring, in ring order, that belongs to
@@ -27,7 +27,7 @@ def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Indices:
     return np.unique(edges, axis=0).astype(np.int32)
 
 
-def collapse_triangles(nodes: Points, edges: Indices) -> tuple[Points, Indices, Indices]:
+def collapse_triangles(nodes: Points, edges: Edges) -> tuple[Points, Edges, Indices]:
     """Collapse edges of triangles until none is left.
 
     Returns nodes (v, 3), edges (e, 2), and for each node before the one after.
@@ -71,7 +71,7 @@ def _symmetrise(around: dict[int, set[int]]) -> bool:
     return bool(missing)
 
 
-def _cheapest(position: dict[int, Points], around: dict[int, set[int]]) -> tuple[int, int] | None:
+def _cheapest(position: dict[int, Numbers], around: dict[int, set[int]]) -> tuple[int, int] | None:
     """Return the edge (lost, kept) with the lowest key, the first found among equals."""
     best, key = None, (np.inf, np.inf)
     for i in sorted(around):
@@ -88,8 +88,8 @@ def _cheapest(position: dict[int, Points], around: dict[int, set[int]]) -> tuple
 
 
 def _compacted(
-    position: dict[int, Points], around: dict[int, set[int]], into: Indices
-) -> tuple[Points, Indices, Indices]:
+    position: dict[int, Numbers], around: dict[int, set[int]], into: Indices
+) -> tuple[Points, Edges, Indices]:
     """Number the nodes that are left from zero and return the edges that either end knows of."""
     left = sorted(position)
     place = {node: i for i, node in enumerate(left)}

@@ -69,7 +69,7 @@ def one_step(
     here: Points,
     rings: Rings,
     contraction: float,
-    attraction: Points,
+    attraction: Numbers,
     params: LbcParams,
     watch: Stopwatch,
     weights: Numbers | None = None,
@@ -92,8 +92,8 @@ def grew(points: Points, original: Points, params: LaplacianParams) -> bool:
 
 
 def next_weights(
-    contraction: float, first_sizes: Points, sizes: Points, params: LaplacianParams
-) -> tuple[float, Points]:
+    contraction: float, first_sizes: Numbers, sizes: Numbers, params: LaplacianParams
+) -> tuple[float, Numbers]:
     """W_L <- s_L W_L; W_H,i <- W_H(0) S_i(0) / S_i(k); both capped (Cao et al. 2010, section 3.3)."""
     with np.errstate(divide="ignore", invalid="ignore"):
         attraction = np.nan_to_num(first_sizes / sizes, nan=1.0, posinf=np.inf)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, Stack
 from tiskel.geometry.neighbours import one_rings
 from tiskel.geometry.rings import Rings
 
@@ -126,7 +126,7 @@ def rename(rings: Rings, merged_into: Indices) -> Rings:
     return Rings(members, sizes, rings.closed)
 
 
-def projections(directions: Points) -> Numbers:
+def projections(directions: Points) -> Stack:
     """Return for each direction two orthonormal vectors across it, (m, 2, 3)."""
     unit = directions / np.linalg.norm(directions, axis=1, keepdims=True)
     least = np.eye(3)[np.abs(unit).argmin(axis=1)]
@@ -135,7 +135,7 @@ def projections(directions: Points) -> Numbers:
     return np.ascontiguousarray(np.stack([first, np.cross(unit, first)], axis=1))
 
 
-def _unions(rings: Rings, keepers: Indices, removed: Indices) -> Indices:
+def _unions(rings: Rings, keepers: Indices, removed: Indices) -> Lists:
     """Return both rings of each pair side by side, repeats blanked out."""
     both = np.concatenate([rings.members[keepers], rings.members[removed]], axis=1)
     order = np.argsort(both, axis=1, kind="stable")

@@ -5,7 +5,7 @@ import heapq
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Indices, Numbers, Points
 
 UNCLAIMED = -1
 
@@ -70,7 +70,7 @@ class _Unclaimed:
             self.rows, self.tree = left, cKDTree(self.points[left])
 
 
-def _claim(points: Points, ball: Indices, at: int, sample: int, owner: Indices, distance: Points) -> Indices:
+def _claim(points: Points, ball: Indices, at: int, sample: int, owner: Indices, distance: Numbers) -> Indices:
     """Give the points of a ball to a new sample where it is nearer than their present one; return them."""
     to_sample = np.linalg.norm(points[ball] - points[at], axis=1)
     nearer = to_sample < distance[ball]
