@@ -20,6 +20,8 @@ Lists = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (n, k): a row 
 Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]  #: shape (n,)
 Masks = np.ndarray[tuple[int, int], np.dtype[np.bool_]]  #: shape (n, k)
 
+TINY = np.finfo(float).tiny  # the least normal number: keeps what may be zero from being divided by
+MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
 FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or a line to rounding
 
 

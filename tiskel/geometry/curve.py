@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
+from tiskel.geometry.frames import unit
 from tiskel.geometry.graph import CurveGraph
 
 
@@ -55,12 +56,6 @@ def curve_samples(curve: CurveGraph, count: int) -> CurveSamples:
     return CurveSamples(np.ascontiguousarray(points), edge.astype(np.int32), directions)
 
 
-def unit(vectors: Points) -> Points:
-    """Return vectors (n, 3) at length one; those of length zero stay zero."""
-    lengths = np.linalg.norm(vectors, axis=1)[:, None]
-    return np.asarray(np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0))
-
-
 def vertex_tangents(curve: CurveGraph) -> Points:
     """Return (v, 3) the tangent of the circle through a vertex and its two neighbours, zero at other vertices.
 
@@ -72,9 +67,6 @@ def vertex_tangents(curve: CurveGraph) -> Points:
     inverse = [unit(side) / np.maximum(np.linalg.norm(side, axis=1), TINY)[:, None] for side in (before, after)]
     tangents[vertices] = unit(inverse[1] - inverse[0])
     return tangents
-
-
-TINY = np.finfo(float).tiny
 
 
 def two_sided(curve: CurveGraph) -> tuple[Indices, Points, Points]:

@@ -56,10 +56,7 @@ class CurveGraph:
     @cached_property
     def components(self) -> int:
         """The number of connected components."""
-        count = len(self.nodes)
-        ends = self.edges[:, 0], self.edges[:, 1]
-        adjacency = sparse.coo_array((np.ones(len(self.edges)), ends), shape=(count, count))
-        return int(connected_components(adjacency, directed=False)[0]) if count else 0
+        return int(component_labels(len(self.nodes), self.edges).max(initial=-1)) + 1
 
     @property
     def loops(self) -> int:
@@ -79,7 +76,7 @@ class CurveGraph:
     @cached_property
     def lengths(self) -> Numbers:
         """(e,) the length of every edge."""
-        return np.asarray(np.linalg.norm(self.nodes[self.edges[:, 0]] - self.nodes[self.edges[:, 1]], axis=1))
+        return edge_lengths(self.nodes, self.edges)
 
     @property
     def length(self) -> float:
@@ -152,11 +149,43 @@ def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
     return np.asarray(np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1))
 
 
-def connected_sets(count: int, links: Edges) -> list[Indices]:
-    """Return the connected sets of things 0 to count that links (l, 2) join, each ascending."""
+def edge_lengths(nodes: Points, edges: Edges) -> Numbers:
+    """Return (e,) the lengths of edges (e, 2) between nodes (v, 3), in their unit."""
+    return np.asarray(np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1))
+
+
+def component_labels(count: int, links: Edges) -> Indices:
+    """Return which connected set each thing is in.
+
+    Parameters
+    ----------
+    count : int
+        How many things there are; they are numbered from 0.
+    links : (l, 2) int32
+        Pairs of them that hang together, in either order, repeats allowed.
+
+    Returns
+    -------
+    (count,) int32
+        The number of the set, from 0, in the order of the sets' first members.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.geometry.graph import component_labels
+    >>> component_labels(4, np.array([[3, 1]], np.int32)).tolist()
+    [0, 1, 2, 1]
+    """
+    if count == 0:
+        return np.zeros(0, np.int32)
     graph = sparse.coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
-    sets, label = connected_components(graph, directed=False)
-    return [np.flatnonzero(label == number).astype(np.int32) for number in range(sets)]
+    return np.asarray(connected_components(graph, directed=False)[1], np.int32)
+
+
+def connected_sets(count: int, links: Edges) -> list[Indices]:
+    """Return the connected sets of things 0 to count - 1 that links (l, 2) join, each ascending, (k,) int32."""
+    label = component_labels(count, links)
+    return [np.flatnonzero(label == number).astype(np.int32) for number in range(int(label.max(initial=-1)) + 1)]
 
 
 def _branches(around: list[list[int]]) -> tuple[Indices, ...]:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
-from tiskel.arrays import Indices, Lists, Mask, Numbers, Points
+from tiskel.arrays import TINY, Indices, Lists, Mask, Numbers, Points
 from tiskel.geometry.neighbours import morton_curve, principal_axes, surroundings
 from tiskel.geometry.rings import Rings
 from tiskel.params import published_neighbours
@@ -63,7 +63,7 @@ class OrientedCloud:
         areas = self.areas[curve.order]
         dipoles = self.normals[curve.order] * areas[:, None]
         starts = np.arange(0, len(areas), BLOCK)
-        weight = np.maximum(areas, np.finfo(float).tiny)
+        weight = np.maximum(areas, TINY)
         totals = np.add.reduceat(weight, starts)
         centres = np.add.reduceat(curve.points * weight[:, None], starts) / totals[:, None]
         away = np.linalg.norm(curve.points - np.repeat(centres, BLOCK, axis=0)[: len(areas)], axis=1)

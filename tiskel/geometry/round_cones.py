@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Mask, Numbers, Points
+from tiskel.geometry.frames import across
 from tiskel.geometry.graph import CurveGraph
 
 BATCH = 200_000  # candidates per round: bounds the memory, not the result
@@ -114,10 +115,10 @@ def sample_cone(
     along = np.choose(part, [low, side, high])
     cosine = np.sqrt(1 - sine**2)
     at_a, at_b = np.sqrt(np.maximum(ra**2 - low**2, 0)), np.sqrt(np.maximum(rb**2 - (high - length) ** 2, 0))
-    across = np.choose(part, [at_a, swept * cosine, at_b])
-    u, v = _frame(axis)
+    away = np.choose(part, [at_a, swept * cosine, at_b])
+    u, v = across(axis)
     turn = 2 * np.pi * second
-    points = a + along[:, None] * axis + across[:, None] * (np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v)
+    points = a + along[:, None] * axis + away[:, None] * (np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v)
     return points, np.choose(part, [0, -1, 1])
 
 
@@ -130,11 +131,3 @@ def _even_pairs(count: int, generator: np.random.Generator) -> tuple[Numbers, Nu
     steps = np.arange(count)[:, None] * np.array([1 / plastic, 1 / plastic**2]) + generator.random(2)
     first, second = (steps % 1).T
     return first, second
-
-
-def _frame(axis: Numbers) -> tuple[Numbers, Numbers]:
-    """Return two orthonormal directions across an axis."""
-    least = np.eye(3)[np.abs(axis).argmin()]
-    u = np.cross(axis, least)
-    u /= np.linalg.norm(u)
-    return u, np.cross(axis, u)

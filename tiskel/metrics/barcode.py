@@ -14,7 +14,8 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import Delaunay
 
-from tiskel.arrays import FLATNESS, Edges, Numbers, Points, Table
+from tiskel.arrays import FLATNESS, TINY, Edges, Numbers, Points, Table
+from tiskel.geometry.graph import edge_lengths
 
 NO_CYCLES: Table = np.zeros((0, 2))
 
@@ -82,7 +83,7 @@ def _persistence(points: Points, dimension: int) -> list[Table]:
     from ripser import ripser
 
     edges = delaunay_edges(points)
-    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    lengths = edge_lengths(points, edges)
     distances = sparse.coo_matrix((lengths, (edges[:, 0], edges[:, 1])), shape=(len(points), len(points)))
     return list(ripser(distances.tocsr(), maxdim=dimension, distance_matrix=True)["dgms"])
 
@@ -111,5 +112,5 @@ def _within_span(points: Points) -> Table:
     """Return coordinates (n, r) in the span of the points, r below 3 where they are flat to rounding."""
     centred = points - points.mean(axis=0)
     _, singular, axes = np.linalg.svd(centred, full_matrices=False)
-    rank = int((singular > FLATNESS * max(singular[0], np.finfo(float).tiny)).sum()) if singular[0] > 0 else 0
+    rank = int((singular > FLATNESS * max(singular[0], TINY)).sum()) if singular[0] > 0 else 0
     return centred if rank == 3 else np.asarray(centred @ axes[:rank].T)

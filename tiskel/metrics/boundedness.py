@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, diagonal
-from tiskel.geometry.curve import unit
+from tiskel.geometry.frames import unit
 from tiskel.geometry.neighbours import MortonCurve, morton_curve
 
 BOUNDED = 0.75  # beta of a point on a flat, endless surface
@@ -223,8 +223,7 @@ def cell_centres(side: int) -> Points:
             face = np.empty((side * side, 3))
             face[:, axis], face[:, (axis + 1) % 3], face[:, (axis + 2) % 3] = sign, u.ravel(), v.ravel()
             centres.append(face)
-    stacked = np.concatenate(centres)
-    return np.asarray(stacked / np.linalg.norm(stacked, axis=1)[:, None])
+    return unit(np.concatenate(centres))
 
 
 def _hull_area(vectors: Points) -> float:

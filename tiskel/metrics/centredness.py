@@ -7,6 +7,7 @@ import numpy as np
 from tiskel.arrays import Indices, Mask, Numbers, Points, Table, diagonal
 from tiskel.geometry.curve import CurveSamples
 from tiskel.geometry.ellipse import fit_ellipse
+from tiskel.geometry.frames import across
 from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.params import MetricParams
 
@@ -145,10 +146,7 @@ def slab_members(cloud: Points, centres: Points, directions: Points, half: float
 
 def in_plane(vectors: Points, direction: Numbers) -> Table:
     """Return (n, 2) the coordinates of vectors (n, 3) on the plane across a unit direction (3,)."""
-    helper = np.eye(3)[np.argmin(np.abs(direction))]
-    u = np.cross(direction, helper)
-    u /= np.linalg.norm(u)
-    return np.asarray(vectors @ np.stack([u, np.cross(direction, u)], axis=1))
+    return np.asarray(vectors @ np.ascontiguousarray(across(direction).T))
 
 
 def before_gap(flat: Table, gap: float) -> Table:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from tiskel.arrays import Floats, Numbers, Points, Stack, Table
+from tiskel.geometry.frames import step_lengths
 from tiskel.rolling.equations import controllability, margin
 from tiskel.rolling.models import RollingModel, tube_of
 from tiskel.rolling.solution import Solution
@@ -53,7 +54,7 @@ def path_lengths(model: RollingModel, radius: float, solution: Solution) -> tupl
     (m11, m12), (_, m22) = model.forms(*((y[1:, :2] + y[:-1, :2]) / 2).T).M
     du, dv = np.diff(y[:, :2], axis=0).T
     on_sphere = -rotation_of(y[:, 2:])[:, 2]  # Q^T (-z_o)
-    chords = np.linalg.norm(np.diff(on_sphere, axis=0), axis=1)
+    chords = step_lengths(on_sphere)
     arcs = 2 * radius * np.arcsin(np.minimum(chords / 2, 1))
     return float(np.hypot(m11 * du + m12 * dv, m22 * dv).sum()), float(arcs.sum())
 

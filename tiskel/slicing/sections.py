@@ -5,7 +5,7 @@ from enum import Enum
 
 import numpy as np
 
-from tiskel.arrays import Numbers, Table
+from tiskel.arrays import MAD, Numbers, Table
 from tiskel.params import SurfaceParams
 from tiskel.slicing.rings import Ring
 
@@ -13,7 +13,6 @@ RIDGE = 1e-7  # weight of the squares of coefficients, times the fourth power of
 WIDE, PROBES, HELD = 0.35, 12, 1e-4  # gaps in radians; places in each; weight of roughness there, per point
 AWAY = 1.5  # the longest of its points that a series may be, and one over the shortest
 HUBER, ROUNDS = 2.5, 4  # deviations beyond which points count less; rounds of weighting
-MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
 OFF_SHARE = 0.1  # of the points that may be further off than a star-shaped section allows
 SLOPES = 3  # columns for how the section changes along the curve: its mean and its first harmonics
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.bspline import Strip, joined
+from tiskel.geometry.frames import step_lengths
 from tiskel.surfaces.jets import Jet, Scalar, Vector, combined, cross, dot, plus, scaled
 
 V_STOP = pi  # v runs from 0 to pi along the skeleton curve
@@ -155,7 +156,7 @@ class Tube:
 
     def length(self, places: int = 400) -> float:
         """Return the length of the skeleton curve."""
-        return float(np.linalg.norm(np.diff(self.curve(np.linspace(0, V_STOP, places)), axis=0), axis=1).sum())
+        return float(step_lengths(self.curve(np.linspace(0, V_STOP, places))).sum())
 
     def curve(self, v: Numbers) -> Points:
         """Return (m, 3) places on the skeleton curve."""

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, Stack
+from tiskel.geometry.frames import across, unit
 from tiskel.geometry.neighbours import one_rings
 from tiskel.geometry.rings import Rings
 
@@ -128,11 +129,7 @@ def rename(rings: Rings, merged_into: Indices) -> Rings:
 
 def projections(directions: Points) -> Stack:
     """Return for each direction two orthonormal vectors across it, (m, 2, 3)."""
-    unit = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    least = np.eye(3)[np.abs(unit).argmin(axis=1)]
-    first = np.cross(unit, least)
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
-    return np.ascontiguousarray(np.stack([first, np.cross(unit, first)], axis=1))
+    return np.ascontiguousarray(across(unit(directions)))
 
 
 def _unions(rings: Rings, keepers: Indices, removed: Indices) -> Lists:
