@@ -26,7 +26,17 @@ FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or 
 
 
 def as_points(points: npt.ArrayLike) -> Points:
-    """Return the points as a C-contiguous float64 array of shape (n, 3).
+    """Return the points as an array that is laid out as the kernels need it.
+
+    Parameters
+    ----------
+    points : array_like
+        Numbers in the shape (n, 3), in any unit; NaN and infinity pass.
+
+    Returns
+    -------
+    (n, 3) float64
+        C-contiguous; the argument itself where it is so already.
 
     Raises
     ------
@@ -49,7 +59,18 @@ def finite_rows(points: Points) -> Mask:
 
 
 def first_of_duplicates(points: Points) -> Indices:
-    """Return (n,) int32, for each of points (n, 3) the first row at exactly the same place; itself where alone."""
+    """Return for each point the first row at exactly the same place.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Finite, in any unit.
+
+    Returns
+    -------
+    (n,) int32
+        The row itself where it is alone or first.
+    """
     _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
     return first[inverse.ravel()].astype(np.int32)
 
@@ -79,7 +100,12 @@ def resolved(into: Indices) -> Indices:
 
 
 def check_solid(points: Points) -> None:
-    """Check that distinct points (n, 3) surround a body.
+    """Check that points surround a body.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Distinct and finite, in any unit.
 
     Raises
     ------

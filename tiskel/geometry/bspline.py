@@ -42,10 +42,12 @@ class Strip:
 
     @property
     def intervals(self) -> int:
+        """How many even intervals there are."""
         return len(self.coefficients) - DEGREE
 
     @property
     def step(self) -> float:
+        """How long each of them is, in the unit of v."""
         return self.stop / self.intervals
 
     @cached_property
@@ -86,7 +88,7 @@ def fit_strip(
     periodic: bool = False,
     penalty: float | None = None,
 ) -> Strip:
-    """Return the strip nearest to values (m, d) at places v (m,) with weights (m,), all columns alike smooth.
+    """Return the strip nearest to values at places, all columns alike smooth.
 
     Parameters
     ----------
@@ -104,6 +106,10 @@ def fit_strip(
         Whether it closes.
     penalty : float, optional
         Weight of roughness, in the mean weight of the values; None: by generalised cross-validation.
+
+    Returns
+    -------
+    Strip
     """
     intervals = max(intervals, DEGREE) if periodic else max(intervals, 1)
     wrap = np.arange(intervals + DEGREE) % (intervals if periodic else intervals + DEGREE)

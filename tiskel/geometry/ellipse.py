@@ -12,19 +12,35 @@ FLAT = 1e-8  # relative: a scatter matrix worse conditioned says nothing
 
 @dataclass(frozen=True)
 class Ellipse:
-    """Centre (2,) and semi-axes (2,), longer first, in the unit of the points."""
+    """An ellipse in a plane.
+
+    Attributes
+    ----------
+    centre : (2,) float64
+        In the unit of the points.
+    axes : (2,) float64
+        The semi-axes, the longer first, in the same unit.
+    """
 
     centre: Numbers
     axes: Numbers
 
 
 def fit_ellipse(points: Table) -> Ellipse | None:
-    """Return the ellipse of least algebraic distance to points (n, 2), or None where there is none.
+    """Return the ellipse of least algebraic distance to points of a plane.
 
     Fitzgibbon, Pilu and Fisher (PAMI 1999), in the numerically stable form of
-    Halir and Flusser (WSCG 1998): minimise |D a|^2 under 4 a c - b^2 = 1. None
-    for fewer than five points, for points on a line, and where no solution is
-    an ellipse.
+    Halir and Flusser (WSCG 1998): minimise |D a|^2 under 4 a c - b^2 = 1.
+
+    Parameters
+    ----------
+    points : (n, 2) float64
+        In any unit.
+
+    Returns
+    -------
+    Ellipse or None
+        None for fewer than five points, for points on a line, and where no solution is an ellipse.
     """
     if len(points) < LEAST:
         return None

@@ -137,13 +137,39 @@ class CurveGraph:
 
 
 def tidy_edges(edges: Edges) -> Edges:
-    """Return edges with the lower node first, each once, none from a node to itself."""
+    """Return edges with the lower node first, each once, none from a node to itself.
+
+    Parameters
+    ----------
+    edges : (e, 2) int32
+        Pairs of nodes in either order, repeats allowed.
+
+    Returns
+    -------
+    (f, 2) int32
+        In ascending order.
+    """
     ordered = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
     return np.unique(ordered[ordered[:, 0] != ordered[:, 1]], axis=0).reshape(-1, 2)
 
 
 def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
-    """Return (v,) the mean distance of each node's points to it, 0 where it has none."""
+    """Return (v,) the mean distance of each node's points to it, 0 where it has none.
+
+    Parameters
+    ----------
+    nodes : (v, 3) float64
+        In any unit.
+    cloud : (n, 3) float64
+        The points, in the same unit.
+    node_of_point : (n,) int32
+        The node of every point.
+
+    Returns
+    -------
+    (v,) float64
+        In the same unit.
+    """
     distance = np.linalg.norm(cloud - nodes[node_of_point], axis=1)
     counts = np.bincount(node_of_point, minlength=len(nodes))
     return np.asarray(np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1))

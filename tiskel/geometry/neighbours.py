@@ -16,12 +16,17 @@ def nearest_neighbours(points: Points, k: int) -> tuple[Lists, Table]:
 
     Parameters
     ----------
-    points : (n, 3), in any unit, k <= n.
+    points : (n, 3) float64
+        C-contiguous, in any unit.
+    k : int
+        From 1 to n.
 
     Returns
     -------
-    neighbours : (n, k) int32, by distance, ties by index.
-    squares : (n, k), squared distances.
+    neighbours : (n, k) int32
+        Rows of points by distance, ties by index.
+    squares : (n, k) float64
+        Squared distances to them, in the squared unit.
     """
     from tiskel.kernels import neighbours as kernel
 
@@ -38,8 +43,16 @@ class MortonCurve:
 
     Attributes
     ----------
-    points : (n, 3), in this order; order : (n,) int32, their rows; codes : (n,) int64, ascending.
-    low, per_length : (3,) corner of the finest grid, and its cells per length.
+    points : (n, 3) float64
+        The points in this order, in any unit.
+    order : (n,) int32
+        Their rows in the cloud.
+    codes : (n,) int64
+        Their Morton codes, ascending.
+    low : (3,) float64
+        The corner of the finest grid, in the unit of the points.
+    per_length : float
+        How many of its cells go on a unit of length.
     """
 
     points: Points
@@ -49,7 +62,18 @@ class MortonCurve:
     per_length: float
 
     def places(self, queries: Points) -> Indices:
-        """Return where in the order queries (m, 3) would stand; those outside the box at its border."""
+        """Return where in the order places would stand.
+
+        Parameters
+        ----------
+        queries : (m, 3) float64
+            Places in the unit of the points; those outside their bounding box count at its border.
+
+        Returns
+        -------
+        (m,) int32
+            From 0 to n.
+        """
         from tiskel.kernels import neighbours as kernel
 
         codes = np.empty(len(queries), np.int64)
@@ -71,7 +95,22 @@ def morton_curve(points: Points) -> MortonCurve:
 
 
 def principal_axes(points: Points, neighbours: Lists) -> tuple[Table, Axes]:
-    """Return eigenvalues (n, 3), descending, and eigenvectors (n, 3, 3), as rows, of neighbourhood covariances."""
+    """Return the principal axes of neighbourhoods: eigenvalues and eigenvectors of their covariances.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    neighbours : (m, k) int32
+        The rows that make up each neighbourhood.
+
+    Returns
+    -------
+    values : (m, 3) float64
+        Eigenvalues, descending, in the squared unit of the points.
+    axes : (m, 3, 3) float64
+        Unit eigenvectors as rows, in the same order; their signs mean nothing.
+    """
     from tiskel.kernels import axes as kernel
 
     values = np.empty((len(neighbours), 3))
@@ -85,10 +124,19 @@ def one_rings(points: Points, centres: Indices, candidates: Lists, planes: Stack
 
     Parameters
     ----------
-    points : (n, 3).
-    centres : (m,) rows of points.
-    candidates : (m, w) rows of points, -1 pads; the centre and points projected onto it are ignored.
-    planes : (m, 2, 3), two orthonormal directions each.
+    points : (n, 3) float64
+        The cloud, in any unit.
+    centres : (m,) int32
+        Rows of points.
+    candidates : (m, w) int32
+        Rows of points, -1 pads; the centre and points projected onto it are ignored.
+    planes : (m, 2, 3) float64
+        Two orthonormal directions each.
+
+    Returns
+    -------
+    Rings
+        One for each centre; members are rows of points.
 
     Notes
     -----
@@ -112,7 +160,24 @@ def one_rings(points: Points, centres: Indices, candidates: Lists, planes: Stack
 
 
 def surroundings(points: Points, k: int) -> tuple[Lists, Axes, Rings]:
-    """Return the k nearest neighbours of every point, their principal axes, and the one-rings on the leading two."""
+    """Return the k nearest neighbours of every point, their principal axes, and the one-rings on the leading two.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        C-contiguous, in any unit.
+    k : int
+        From 1 to n; every point is the first of its neighbours.
+
+    Returns
+    -------
+    neighbours : (n, k) int32
+        Rows by distance.
+    axes : (n, 3, 3) float64
+        Unit vectors as rows by descending eigenvalue; the last is the normal, up to its sign.
+    rings : Rings
+        Of all points.
+    """
     neighbours, _ = nearest_neighbours(points, k)
     _, axes = principal_axes(points, neighbours)
     everyone = np.arange(len(points), dtype=np.int32)

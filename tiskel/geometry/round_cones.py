@@ -35,6 +35,19 @@ def signed_distance(points: Points, shape: ConeGraph, edge: int) -> Numbers:
 
     Behind the end planes of the cone part a ball is nearest; between them the
     distance is measured along the normal of the slanted side.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Places in the unit of the shape.
+    shape : ConeGraph
+    edge : int
+        Which of its edges.
+
+    Returns
+    -------
+    (n,) float64
+        In the same unit.
     """
     (a, b), (ra, rb) = shape.nodes[shape.edges[edge]], shape.radii[shape.edges[edge]]
     axis, length = b - a, float(np.linalg.norm(b - a))
@@ -52,12 +65,38 @@ def signed_distance(points: Points, shape: ConeGraph, edge: int) -> Numbers:
 
 
 def union_distance(points: Points, shape: ConeGraph) -> Numbers:
-    """Return the smallest signed distance to any part: exact outside, a lower bound on depth inside."""
+    """Return the smallest signed distance to any part; inside it is no more than a bound on the depth.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Places in the unit of the shape.
+    shape : ConeGraph
+
+    Returns
+    -------
+    (n,) float64
+        In the same unit, negative inside; exact outside.
+    """
     return np.asarray(np.min([signed_distance(points, shape, e) for e in range(len(shape.edges))], axis=0))
 
 
 def sample_union(shape: ConeGraph, count: int, generator: np.random.Generator) -> Points:
-    """Return points (count, 3), uniform by area on the surface of the union; points inside another part are removed."""
+    """Return points on the surface of a union, uniform by area; points inside another part are not on it.
+
+    Parameters
+    ----------
+    shape : ConeGraph
+    count : int
+        How many points.
+    generator : numpy.random.Generator
+        Drawn from; the same state gives the same points.
+
+    Returns
+    -------
+    (count, 3) float64
+        In the unit of the shape.
+    """
     areas = np.array([sum(_areas(*_cone(shape, e))) for e in range(len(shape.edges))])
     found: list[Points] = []
     have = 0
@@ -100,7 +139,30 @@ def _areas(a: Numbers, b: Numbers, ra: float, rb: float) -> tuple[float, float, 
 def sample_cone(
     a: Numbers, b: Numbers, ra: float, rb: float, count: int, generator: np.random.Generator
 ) -> tuple[Points, npt.NDArray[np.intp]]:
-    """Return points (count, 3) uniform on a round cone, and for each the end whose ball it lies on, -1 for the side."""
+    """Return points on a round cone, uniform by area, and the part that each lies on.
+
+    Parameters
+    ----------
+    a : (3,) float64
+        The centre of one ball.
+    b : (3,) float64
+        The centre of the other, in the same unit.
+    ra : float
+        The radius at a.
+    rb : float
+        The radius at b.
+    count : int
+        How many points.
+    generator : numpy.random.Generator
+        Drawn from.
+
+    Returns
+    -------
+    points : (count, 3) float64
+        In the same unit.
+    end : (count,) int
+        0 on the ball at a, 1 on that at b, -1 on the side.
+    """
     areas = np.array(_areas(a, b, ra, rb))
     part = np.repeat(np.arange(3), generator.multinomial(count, areas / areas.sum()))
     first, second = _even_pairs(count, generator)

@@ -53,7 +53,20 @@ def solid_of(surface: OrientedCloud) -> Solid:
 
 
 def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
-    """Return the handles of the solid inside a surface, or None and why they cannot be told."""
+    """Return the handles of the solid inside a surface, or None and why they cannot be told.
+
+    Parameters
+    ----------
+    surface : OrientedCloud
+        With its ``consistency`` checked.
+
+    Returns
+    -------
+    handles : int or None
+        None where they cannot be told.
+    reason : str
+        Why not; empty where they can.
+    """
     if not surface.trusted:
         share = f"{surface.consistency:.0%}"
         return None, f"the normals agree on an inside at {share} of the points only; the cloud is too sparse or open"
@@ -95,7 +108,22 @@ def _winding_grid(surface: OrientedCloud, low: Numbers, high: Numbers, step: flo
 
 
 def betti_numbers(cubes: Grid) -> tuple[int, int, int]:
-    """Return components, loops and cavities of a union of closed unit cubes, given as a grid of booleans."""
+    """Return the Betti numbers of a union of closed unit cubes.
+
+    Parameters
+    ----------
+    cubes : (i, j, k) bool
+        Which cubes of a grid belong to it.
+
+    Returns
+    -------
+    components : int
+        Pieces; cubes that share a corner hang together.
+    loops : int
+        Handles, all pieces together.
+    cavities : int
+        Hollows that no way leads out of.
+    """
     padded = np.pad(cubes, 1)
     edges = sum(int(_touched(padded, axes).sum()) for axes in ((0, 1), (0, 2), (1, 2)))
     faces = sum(int(_touched(padded, (axis,)).sum()) for axis in range(3))

@@ -15,12 +15,17 @@ NEIGHBOURS = 4  # others that are counted: the four sides of a square lattice
 
 
 def spacings_from(squares: Table) -> Numbers:
-    """Return (n,) the spacing about each point.
+    """Return the spacing about each point.
 
     Parameters
     ----------
     squares : (n, k) float64
         Squared distances to the k nearest points, the point itself first.
+
+    Returns
+    -------
+    (n,) float64
+        In the root of that unit.
 
     Examples
     --------
