@@ -52,7 +52,7 @@ def smallest_distances(points: Points, rings: Rings) -> Numbers:
     Returns
     -------
     (n,) float64
-        In the unit of the points; infinite for an empty ring.
+        In the unit of the points; 0 for an empty ring.
     """
     from tiskel.kernels import laplacian as kernel
 

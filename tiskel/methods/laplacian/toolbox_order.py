@@ -19,7 +19,22 @@ from tiskel.geometry.rings import Rings
 
 
 def in_published_order(points: Points, neighbours: Lists, rings: Rings) -> Rings:
-    """Return the same rings, each starting and turning as in the toolbox; neighbours is (n, k), nearest first."""
+    """Return the same rings, each starting and turning as in the toolbox.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    neighbours : (n, k) int32
+        The nearest of every point, itself first.
+    rings : Rings
+        Of all points.
+
+    Returns
+    -------
+    Rings
+        Those that Qhull triangulates otherwise stay as they are.
+    """
     clouds = points[neighbours]
     axes = np.linalg.svd(clouds - clouds.mean(axis=1, keepdims=True), full_matrices=False)[2]
     flat = np.einsum("nkc,nac->nka", clouds, axes[:, :2])
