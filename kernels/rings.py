@@ -22,13 +22,13 @@ Table = ti.types.ndarray(dtype=ti.i32, ndim=2)
 
 @ti.func
 def cross(a, b) -> ti.f64:
-    """Return the cross product of two vectors in the plane."""
+    """Return the cross product of two vectors in the plane, positive where b is to the left of a."""
     return a[0] * b[1] - a[1] * b[0]
 
 
 @ti.func
 def lower_half(a) -> bool:
-    """Tell whether a direction has an angle of at least pi, counted from the x axis."""
+    """Tell whether the angle of a from the positive first axis is half a turn or more."""
     return a[1] < 0.0 or (a[1] == 0.0 and a[0] < 0.0)
 
 
@@ -44,7 +44,7 @@ def comes_before(a, b) -> bool:
 
 @ti.func
 def same_direction(a, b) -> bool:
-    """Tell whether two vectors point the same way, exactly."""
+    """Tell whether a and b lie on one ray from the origin, exactly."""
     return cross(a, b) == 0.0 and a.dot(b) > 0.0
 
 

@@ -12,7 +12,7 @@ Offsets = ti.types.ndarray(dtype=ti.i64, ndim=1)
 
 @ti.func
 def in_section(offset, direction, half: ti.f64, reach: ti.f64) -> bool:
-    """Tell whether an offset lies within half of a plane and within reach of its axis."""
+    """Tell whether an offset from a centre is within half along a unit direction and within reach across it."""
     along = offset.dot(direction)
     return ti.abs(along) <= half and offset.norm_sqr() - along * along <= reach * reach
 

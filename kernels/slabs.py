@@ -11,7 +11,7 @@ Offsets = ti.types.ndarray(dtype=ti.i64, ndim=1)
 
 @ti.func
 def in_slab(point, centre, direction, half: ti.f64) -> bool:
-    """Tell whether a point lies within half of the plane through a centre across a direction."""
+    """Tell whether a point is no further than half from the plane through a centre across a unit direction."""
     return ti.abs((point - centre).dot(direction)) <= half
 
 

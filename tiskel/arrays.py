@@ -1,4 +1,4 @@
-"""Checks of arrays at the door of the library."""
+"""The types of arrays, and checks of arrays at the door of the library."""
 
 from dataclasses import dataclass
 
@@ -8,16 +8,35 @@ import numpy.typing as npt
 from tiskel.errors import TiskelError
 from tiskel.params import MIN_POINTS, SIDE, Normalisation
 
-Points = npt.NDArray[np.float64]  #: shape (n, 3)
-Indices = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
+# mypy tells them apart by dtype and number of axes, not by how long an axis is: Points and Table are one type to it.
+Numbers = np.ndarray[tuple[int], np.dtype[np.float64]]  #: shape (n,); a vector (3,) too
+Points = np.ndarray[tuple[int, int], np.dtype[np.float64]]  #: shape (n, 3)
+Table = np.ndarray[tuple[int, int], np.dtype[np.float64]]  #: shape (n, k): columns, matrices, places in a plane
+Stack = np.ndarray[tuple[int, int, int], np.dtype[np.float64]]  #: shape (n, k, m): a table for each of n
+Floats = npt.NDArray[np.float64]  #: any number of axes, as the docstring says
+Indices = np.ndarray[tuple[int], np.dtype[np.int32]]  #: shape (n,): rows of something
+Edges = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (e, 2), or (e, 3) for triangles
+Lists = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (n, k): a row of rows for each of n
+Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]  #: shape (n,)
+Masks = np.ndarray[tuple[int, int], np.dtype[np.bool_]]  #: shape (n, k)
 
+TINY = np.finfo(float).tiny  # the least normal number: keeps what may be zero from being divided by
+MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
 FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or a line to rounding
 
 
 def as_points(points: npt.ArrayLike) -> Points:
-    """Return the points as a C-contiguous float64 array of shape (n, 3).
+    """Return the points as an array that is laid out as the kernels need it.
+
+    Parameters
+    ----------
+    points : array_like
+        Numbers in the shape (n, 3), in any unit; NaN and infinity pass.
+
+    Returns
+    -------
+    (n, 3) float64
+        C-contiguous; the argument itself where it is so already.
 
     Raises
     ------
@@ -40,7 +59,18 @@ def finite_rows(points: Points) -> Mask:
 
 
 def first_of_duplicates(points: Points) -> Indices:
-    """Return (n,) int32, for each of points (n, 3) the first row at exactly the same place; itself where alone."""
+    """Return for each point the first row at exactly the same place.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Finite, in any unit.
+
+    Returns
+    -------
+    (n,) int32
+        The row itself where it is alone or first.
+    """
     _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
     return first[inverse.ravel()].astype(np.int32)
 
@@ -70,7 +100,12 @@ def resolved(into: Indices) -> Indices:
 
 
 def check_solid(points: Points) -> None:
-    """Check that distinct points (n, 3) surround a body.
+    """Check that points surround a body.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Distinct and finite, in any unit.
 
     Raises
     ------

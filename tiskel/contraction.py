@@ -11,6 +11,7 @@ from tiskel.arrays import (
     Indices,
     Numbers,
     Points,
+    Stack,
     as_points,
     check_solid,
     finite_rows,
@@ -79,7 +80,7 @@ class Contraction:
     input_rows: Indices
     merged_into: Indices
     merged_step: Indices
-    history: Numbers
+    history: Stack
     steps: tuple[StepRecord, ...]
     status: Status
     warnings: tuple[str, ...]

@@ -6,7 +6,22 @@ from contextlib import contextmanager
 
 
 class Stopwatch:
-    """Collect wall time by part."""
+    """Collect wall time by part.
+
+    Attributes
+    ----------
+    seconds : dict of str to float
+        Wall time of each part so far.
+
+    Examples
+    --------
+    >>> from tiskel.timing import Stopwatch
+    >>> watch = Stopwatch()
+    >>> with watch.measure("solve"):
+    ...     pass
+    >>> list(watch.seconds)
+    ['solve']
+    """
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}

@@ -212,7 +212,10 @@ BROKEN = {
     "only a header.csv": (b"x,y,z\n", "holds no points"),
     "latin.txt": ("0 1 2 \xe9\n".encode("latin-1"), "not text"),
     "noise.npy": (b"\x93NUMPY" + bytes(40), "not a valid NumPy file"),
-    "flat.npy": (numpy_arrays.write(np.arange(5.0)), "must hold an array of shape (n, 3), got (5,)"),
+    "flat.npy": (
+        numpy_arrays.write(np.arange(5.0)),  # type: ignore[arg-type]
+        "must hold an array of shape (n, 3), got (5,)",
+    ),
     "noise.npz": (b"PK not a zip", "not a valid NumPy file"),
     "cloud.docx": (b"x", "unknown kind of file '.docx'"),
     "cloud": (b"x", "unknown kind of file 'without a suffix'"),

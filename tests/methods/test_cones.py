@@ -7,7 +7,7 @@ import pytest
 
 from reference.cones import cone_residuals
 from tiskel import ShapeParams, make_shape, shape_graph
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Indices, Numbers, Points
 from tiskel.geometry.graph import tidy_edges
 from tiskel.geometry.round_cones import ConeGraph, signed_distance
 from tiskel.geometry.solid import solid_of
@@ -30,7 +30,7 @@ from tiskel.params import RobustParams
 USUAL = RobustParams()
 
 
-def curve_of(nodes: Points, radii: Points, edges: Indices, owner: Indices) -> tuple[ConeCurve, Sections]:
+def curve_of(nodes: Points, radii: Numbers, edges: Edges, owner: Indices) -> tuple[ConeCurve, Sections]:
     """A curve whose nodes are sections themselves, and the sections of the points: their nodes."""
     count = len(nodes)
     curve = ConeCurve(
@@ -44,7 +44,7 @@ def curve_of(nodes: Points, radii: Points, edges: Indices, owner: Indices) -> tu
     return curve, Sections(owner, np.zeros_like(owner))
 
 
-def chain(nodes: Points, radii: Points, owner: Indices) -> tuple[ConeCurve, Sections]:
+def chain(nodes: Points, radii: Numbers, owner: Indices) -> tuple[ConeCurve, Sections]:
     count = len(nodes)
     edges = np.stack([np.arange(count - 1), np.arange(1, count)], axis=1).astype(np.int32)
     return curve_of(nodes, radii, edges, owner)
@@ -86,7 +86,7 @@ def test_the_step_descends_along_the_slope_of_the_residuals() -> None:
     gradient = np.bincount(unknowns.ravel(), sides.ravel(), minlength=4 * len(curve.nodes)).reshape(-1, 4)
     light = 1 / np.maximum(1, np.abs(at.residual) / (cones.OUTLYING * at.deviation))
 
-    def half_squares(nodes: Points, radii: Points) -> float:
+    def half_squares(nodes: Points, radii: Numbers) -> float:
         residual = cone_residuals(points, nodes, radii, curve.edges)[1][rows, at.edge]
         return 0.5 * float((light * residual**2).sum())
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tiskel import ContractionParams, ShapeParams, TiskelError, contract, make_shape, shape_graph
-from tiskel.arrays import Points
+from tiskel.arrays import Numbers, Points
 from tiskel.methods.robust.axes import line_centres
 from tiskel.methods.robust.fronts import cut
 from tiskel.methods.robust.network import neighbour_network
@@ -166,7 +166,7 @@ def test_a_heavier_part_contracts_further(capsule: Points) -> None:
         ("gls", np.full(800, np.nan), "positive and finite"),
     ],
 )
-def test_weights_that_do_not_fit_are_refused(capsule: Points, method: str, weights: Points, message: str) -> None:
+def test_weights_that_do_not_fit_are_refused(capsule: Points, method: str, weights: Numbers, message: str) -> None:
     with pytest.raises(TiskelError, match=message):
         contract(capsule, ContractionParams(method=method), weights)
 

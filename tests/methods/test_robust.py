@@ -22,7 +22,7 @@ from tiskel import (
     shape_graph,
     write_contraction,
 )  # fmt: skip
-from tiskel.arrays import Indices, Points, diagonal, normalisation
+from tiskel.arrays import Edges, Points, diagonal, normalisation
 from tiskel.gallery.catalogue import SHAPES
 from tiskel.gallery.random_graphs import random_graph
 from tiskel.geometry.curve import curve_samples
@@ -230,7 +230,7 @@ def fitted(name: str, points: Points | None = None) -> Candidate:
     return fitted_curve(network, solid, c.sections, RobustParams())
 
 
-def with_edges(made: Candidate, edges: Indices) -> Candidate:
+def with_edges(made: Candidate, edges: Edges) -> Candidate:
     curve = replace(made.curve, edges=edges)
     fit = fit_cones(curve, made.network.points, made.sections.section, rounds=0, straightness=0)
     return replace(made, curve=curve, fit=fit)

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Edges, Numbers, Points, Table
 
 ROUNDS = 120  # of ternary search, each leaves two thirds
 
 
 def cone_residuals(
-    points: Points, nodes: Points, radii: Numbers, edges: Indices
-) -> tuple[Numbers, Numbers]:  # fmt: skip
+    points: Points, nodes: Points, radii: Numbers, edges: Edges
+) -> tuple[Table, Table]:  # fmt: skip
     """Return (p, e) the share along each edge of a point's foot, and its signed distance to the cone's surface.
 
     A round cone is the union of the balls along its axis, so the distance is the

@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from tiskel.arrays import Points
+from tiskel.arrays import Numbers, Points
 
 
-def winding_number(query: Points, points: Points, dipoles: Points, softening: np.ndarray) -> float:
+def winding_number(query: Numbers, points: Points, dipoles: Points, softening: np.ndarray) -> float:
     """Return the sum of solid angles of softened patches, over 4 pi."""
     total = 0.0
     for p, dipole, soft in zip(points, dipoles, softening, strict=True):
@@ -15,13 +15,13 @@ def winding_number(query: Points, points: Points, dipoles: Points, softening: np
     return total / (4 * np.pi)
 
 
-def hull_beta(place: Points, cloud: Points) -> float:
+def hull_beta(place: Numbers, cloud: Points) -> float:
     """Return the area of the convex hull of all unit vectors from a place, as a share of the sphere's."""
     vectors = cloud - place
     return float(ConvexHull(vectors / np.linalg.norm(vectors, axis=1)[:, None]).area / (4 * np.pi))
 
 
-def cell_of(d: Points, side: int) -> int:
+def cell_of(d: Numbers, side: int) -> int:
     """Return the cell of a direction on the cube map."""
     axis = int(np.argmax(np.abs(d)))
     face = 2 * axis + (d[axis] < 0)
@@ -29,7 +29,7 @@ def cell_of(d: Points, side: int) -> int:
     return int((face * side + row) * side + column)
 
 
-def covered_cells(place: Points, cloud: Points, spacing: np.ndarray, side: int) -> set[int]:
+def covered_cells(place: Numbers, cloud: Points, spacing: np.ndarray, side: int) -> set[int]:
     """Return the cells that meet the points' discs, each tried at its middle and, where it is wide, at eight more."""
     cells = set()
     for p, radius in zip(cloud, spacing, strict=True):

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Points, Stack, Table
 from tiskel.surfaces.jets import ParametricSurface
 from tiskel.surfaces.nearest import refined_place
 
@@ -14,9 +14,9 @@ Twist = Callable[[float], tuple[Numbers, Numbers]]
 
 
 def pose_over_time(
-    surface: ParametricSurface, sigma: float, radius: float, start: tuple[Numbers, Numbers, float, float],
+    surface: ParametricSurface, sigma: float, radius: float, start: tuple[Numbers, Table, float, float],
     twist: Twist, times: Numbers,
-) -> tuple[Numbers, Numbers, Numbers]:  # fmt: skip
+) -> tuple[Points, Stack, Table]:  # fmt: skip
     """Return centres (n, 3), rotations (n, 3, 3) and (u, v) (n, 2) of a sphere that is driven in SE(3).
 
     Its material at the contact moves by -V, it turns by -omega, both along the
@@ -24,7 +24,7 @@ def pose_over_time(
     """
     guess = [start[2], start[3]]
 
-    def frame(centre: Numbers) -> tuple[Numbers, Numbers]:
+    def frame(centre: Numbers) -> tuple[Table, Numbers]:
         guess[:] = refined_place(surface, centre, *guess)
         place = surface.jet(*guess)
         f, f_u = np.array(place.f, float), np.array(place.f_u, float)

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Points, Table
 from tiskel.geometry.bspline import fit_strip
 from tiskel.surfaces.tube import V_STOP, Tube
 
 
-def tube(curve: Numbers, series: Numbers, m: tuple[float, float, float] = (0, 0, 1), intervals: int = 40) -> Tube:
+def tube(curve: Points, series: Table, m: tuple[float, float, float] = (0, 0, 1), intervals: int = 40) -> Tube:
     """Return the surface through values of p (k, 3) and of the series (k, 2 N + 1) at even v."""
     v = np.linspace(0, V_STOP, len(curve))
     field = np.tile(np.asarray(m, float), (len(v), 1))

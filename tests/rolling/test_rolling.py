@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from reference.rolling import pose_over_time
 from reference.tubes import bent_tube, straight_tube, tube
 from tiskel import FittedSurface, contract, extract_skeleton, fit_surface
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Points, Stack, Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import local_rates
@@ -30,7 +30,7 @@ SHARP: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12, "meet": False}
 BENT = bent_tube()
 
 
-def driven(surface: ParametricSurface, p: RollParams, times: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def driven(surface: ParametricSurface, p: RollParams, times: Numbers) -> tuple[Points, Stack, Table]:
     """The same run in SE(3); see tests/reference/rolling.py."""
     u, v, u_s, v_s, psi = p.start
     jet = surface.jet(u, v)
@@ -308,7 +308,7 @@ def test_the_summary_holds_plain_finite_numbers() -> None:
 
 
 @pytest.fixture(scope="module")
-def capsule_surface(capsule: Numbers) -> FittedSurface:
+def capsule_surface(capsule: Points) -> FittedSurface:
     return fit_surface(extract_skeleton(contract(capsule)))[0]
 
 

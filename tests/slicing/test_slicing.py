@@ -20,7 +20,7 @@ from tiskel import (
     shape_graph,
     write_surfaces,
 )
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Points, Table
 from tiskel.geometry.bspline import fit_strip
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.round_cones import union_distance
@@ -62,7 +62,7 @@ def test_a_curve_without_edges_is_one_path() -> None:
     assert paths_of(CurveGraph(FIVE, np.zeros((0, 2), np.int32)), "all")[0].nodes.tolist() == [0, 1, 2, 3, 4]
 
 
-def circle(count: int, radius: float, centre: tuple[float, float] = (0, 0), start: float = 0.0) -> Numbers:
+def circle(count: int, radius: float, centre: tuple[float, float] = (0, 0), start: float = 0.0) -> Table:
     u = start + np.linspace(0, 2 * np.pi - start, count, endpoint=False)
     return np.stack([centre[0] + radius * np.cos(u), centre[1] + radius * np.sin(u)], axis=1)
 

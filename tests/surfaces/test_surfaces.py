@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from reference.tubes import bent_tube
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Points
 from tiskel.geometry.bspline import fit_strip
 from tiskel.slicing.axis import fit_axis, sharpest
 from tiskel.slicing.field import fit_field
@@ -111,7 +111,7 @@ def test_a_corner_is_rounded_until_slices_do_not_cross() -> None:
     assert sharpest(fit_axis(corner, np.ones(21), 0.2, 30, closed=False)) * 0.2 < 0.85
 
 
-def helix() -> Numbers:
+def helix() -> Points:
     t = np.linspace(0, 4, 60)
     return np.stack([np.cos(t), np.sin(t), 0.5 * t], axis=1)
 

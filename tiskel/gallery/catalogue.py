@@ -5,12 +5,13 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from tiskel.arrays import Points
 from tiskel.gallery import bodies
 from tiskel.gallery.strands import Strand, from_strands
 from tiskel.geometry.round_cones import ConeGraph
 
 
-def _circle(count: int, radius: float, centre: npt.ArrayLike = (0, 0, 0)) -> npt.NDArray[np.float64]:
+def _circle(count: int, radius: float, centre: npt.ArrayLike = (0, 0, 0)) -> Points:
     """Return a closed circle in the xy plane, its first point repeated at the end."""
     turn = 2 * np.pi * np.arange(count + 1) / count
     circle = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1) * radius + np.asarray(centre, dtype=float)
@@ -18,7 +19,7 @@ def _circle(count: int, radius: float, centre: npt.ArrayLike = (0, 0, 0)) -> npt
     return np.asarray(circle)
 
 
-def _arc(count: int, radius: float, start: float, stop: float) -> npt.NDArray[np.float64]:
+def _arc(count: int, radius: float, start: float, stop: float) -> Points:
     turn = np.linspace(start, stop, count)
     return np.asarray(np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1) * radius)
 

@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Stack, Table
 from tiskel.errors import TiskelError
 from tiskel.geometry.round_cones import ConeGraph
 
@@ -144,7 +144,7 @@ def _apart(shape: ConeGraph, count: int) -> bool:
     return True
 
 
-def _probes(shape: ConeGraph) -> tuple[Points, Numbers]:
+def _probes(shape: ConeGraph) -> tuple[Stack, Table]:
     """Return places (e, p, 3) along the edges and radii (e, p) there."""
     ends, radii = shape.nodes[shape.edges], shape.radii[shape.edges]
     share = PROBES[None, :, None]

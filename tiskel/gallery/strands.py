@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from tiskel.arrays import Numbers
 from tiskel.geometry.round_cones import ConeGraph
 
 Strand = tuple[npt.ArrayLike, npt.ArrayLike]  # positions (m, 3) along a strand, radii (m,) or one radius
@@ -34,7 +35,7 @@ def from_strands(strands: Iterable[Strand], *, open_ends: bool = False) -> ConeG
     >>> cross.radii.tolist()
     [0.2, 0.3, 0.2, 0.1]
     """
-    nodes: list[npt.NDArray[np.float64]] = []
+    nodes: list[Numbers] = []
     radii: list[float] = []
     edges: list[tuple[int, int]] = []
     for positions, given in strands:
@@ -45,9 +46,7 @@ def from_strands(strands: Iterable[Strand], *, open_ends: bool = False) -> ConeG
     return ConeGraph(np.array(nodes), np.array(edges, np.int32), np.array(radii), open_ends=opened)
 
 
-def _node(
-    nodes: list[npt.NDArray[np.float64]], radii: list[float], position: npt.NDArray[np.float64], radius: float
-) -> int:
+def _node(nodes: list[Numbers], radii: list[float], position: Numbers, radius: float) -> int:
     for i, node in enumerate(nodes):
         if np.linalg.norm(node - position) < JOIN:
             radii[i] = max(radii[i], float(radius))

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import BSpline
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Stack, Table
 
 DEGREE = 5
 PENALISED = 3  # differences of this order
@@ -36,35 +36,35 @@ class Strip:
         Whether it closes.
     """
 
-    coefficients: Numbers
+    coefficients: Table
     stop: float
     periodic: bool = False
 
     @property
     def intervals(self) -> int:
-        """The number of even intervals between the knots."""
+        """How many even intervals there are."""
         return len(self.coefficients) - DEGREE
 
     @property
     def step(self) -> float:
-        """The length of an interval."""
+        """How long each of them is, in the unit of v."""
         return self.stop / self.intervals
 
     @cached_property
-    def pieces(self) -> Numbers:
+    def pieces(self) -> Stack:
         """The polynomials (intervals, 6, d) of every interval, the constant first."""
         spline = BSpline(_knots(self.intervals, self.stop), self.coefficients, DEGREE)
         starts = np.arange(self.intervals) * self.step
         return np.stack([spline(starts, nu=order) / factorial(order) for order in range(DEGREE + 1)], axis=1)
 
-    def at(self, v: float) -> Numbers:
+    def at(self, v: float) -> Table:
         """Return (4, d) the values at a place and three derivatives; beyond the ends the last polynomials go on."""
         if self.periodic:
             v = v % self.stop
         piece = min(max(int(v / self.step), 0), self.intervals - 1)
         return np.asarray(_powers(v - piece * self.step) @ self.pieces[piece])
 
-    def along(self, v: Numbers) -> Numbers:
+    def along(self, v: Numbers) -> Stack:
         """Return (m, 4, d) the same at many places (m,)."""
         v = np.mod(v, self.stop) if self.periodic else v
         piece = np.clip((v / self.step).astype(int), 0, self.intervals - 1)
@@ -80,7 +80,7 @@ def joined(strips: "list[Strip]") -> Strip:
 
 def fit_strip(
     v: Numbers,
-    values: Numbers,
+    values: Table,
     weights: Numbers,
     intervals: int,
     stop: float,
@@ -88,7 +88,7 @@ def fit_strip(
     periodic: bool = False,
     penalty: float | None = None,
 ) -> Strip:
-    """Return the strip nearest to values (m, d) at places v (m,) with weights (m,), all columns alike smooth.
+    """Return the strip nearest to values at places, all columns alike smooth.
 
     Parameters
     ----------
@@ -106,6 +106,10 @@ def fit_strip(
         Whether it closes.
     penalty : float, optional
         Weight of roughness, in the mean weight of the values; None: by generalised cross-validation.
+
+    Returns
+    -------
+    Strip
     """
     intervals = max(intervals, DEGREE) if periodic else max(intervals, 1)
     wrap = np.arange(intervals + DEGREE) % (intervals if periodic else intervals + DEGREE)
@@ -116,7 +120,7 @@ def fit_strip(
     right = basis.T @ (weights[:, None] * values)
     scale = float(np.trace(normal)) / len(normal)
 
-    def solve(weight: float) -> tuple[Numbers, float]:
+    def solve(weight: float) -> tuple[Table, float]:
         matrix = normal + scale * (weight * rough + 1e-12 * np.eye(len(normal)))
         solution = np.linalg.solve(matrix, right)
         freedom = float(np.trace(np.linalg.solve(matrix, normal)))
@@ -132,7 +136,7 @@ def _knots(intervals: int, stop: float) -> Numbers:
     return np.asarray(np.arange(-DEGREE, intervals + DEGREE + 1) * (stop / intervals))
 
 
-def _basis(v: Numbers, intervals: int, stop: float, wrap: npt.NDArray[np.intp]) -> Numbers:
+def _basis(v: Numbers, intervals: int, stop: float, wrap: npt.NDArray[np.intp]) -> Table:
     """Return (m, b) the B-splines at places, those that are the same function added up."""
     knots = _knots(intervals, stop)
     v = np.mod(v, stop) if wrap.max() + 1 < len(wrap) else np.clip(v, 0, stop)
@@ -140,7 +144,7 @@ def _basis(v: Numbers, intervals: int, stop: float, wrap: npt.NDArray[np.intp]) 
     return np.asarray(every @ np.eye(wrap.max() + 1)[wrap])
 
 
-def _powers(t: float) -> Numbers:
+def _powers(t: float) -> Table:
     """Return (4, 6) what turns the coefficients of a quintic into its value and three derivatives at t."""
     t2 = t * t
     t3, t4 = t2 * t, t2 * t2

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
+from tiskel.geometry.frames import unit
 from tiskel.geometry.graph import CurveGraph
 
 
@@ -14,9 +15,12 @@ class CurveSamples:
 
     Attributes
     ----------
-    points : (q, 3).
-    edges : (q,) the edge that each lies on.
-    directions : (q, 3) unit tangents; zero where there is none (joints, edges without length).
+    points : (q, 3) float64
+        The places, in the curve's unit.
+    edges : (q,) int32
+        The edge that each lies on.
+    directions : (q, 3) float64
+        Unit tangents; zero where there is none (joints, edges without length).
     """
 
     points: Points
@@ -25,7 +29,7 @@ class CurveSamples:
 
     @property
     def directed(self) -> Mask:
-        """Which places have a direction."""
+        """(q,) which places have a direction."""
         return np.asarray(self.directions.any(axis=1))
 
 
@@ -36,6 +40,17 @@ def curve_samples(curve: CurveGraph, count: int) -> CurveSamples:
     vertex excluded and its last included. The direction is the edge's; at a
     vertex with two neighbours the tangent of the circle through the three; at a
     joint there is none.
+
+    Parameters
+    ----------
+    curve : CurveGraph
+        With one edge at least.
+    count : int
+        How many places to aim at; every edge gets one at least.
+
+    Returns
+    -------
+    CurveSamples
     """
     nodes, edges, lengths = curve.nodes, curve.edges, curve.lengths
     total = lengths.sum()
@@ -55,12 +70,6 @@ def curve_samples(curve: CurveGraph, count: int) -> CurveSamples:
     return CurveSamples(np.ascontiguousarray(points), edge.astype(np.int32), directions)
 
 
-def unit(vectors: Points) -> Points:
-    """Return vectors (n, 3) at length one; those of length zero stay zero."""
-    lengths = np.linalg.norm(vectors, axis=1)[:, None]
-    return np.asarray(np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0))
-
-
 def vertex_tangents(curve: CurveGraph) -> Points:
     """Return (v, 3) the tangent of the circle through a vertex and its two neighbours, zero at other vertices.
 
@@ -74,18 +83,42 @@ def vertex_tangents(curve: CurveGraph) -> Points:
     return tangents
 
 
-TINY = np.finfo(float).tiny
-
-
 def two_sided(curve: CurveGraph) -> tuple[Indices, Points, Points]:
-    """Return the vertices (d,) with exactly two neighbours, and the vectors (d, 3) to either."""
+    """Return the vertices with exactly two neighbours, and the vectors to either.
+
+    Parameters
+    ----------
+    curve : CurveGraph
+
+    Returns
+    -------
+    vertices : (d,) int32
+        Nodes, ascending.
+    before : (d, 3) float64
+        From each to one neighbour, the lower node, in the curve's unit.
+    after : (d, 3) float64
+        From each to the other.
+    """
     before, vertices, after = curve.passages.T
     here = curve.nodes[vertices]
     return vertices, curve.nodes[before] - here, curve.nodes[after] - here
 
 
 def turns(before: Points, after: Points) -> Numbers:
-    """Return (d,) D_n, the angle between pairs of vectors (d, 3) as a share of pi; NaN where one has no length."""
+    """Return D_n, the angle between pairs of vectors.
+
+    Parameters
+    ----------
+    before : (d, 3) float64
+        The first of each pair, of any length.
+    after : (d, 3) float64
+        The second.
+
+    Returns
+    -------
+    (d,) float64
+        Shares of pi; NaN where one of the two has no length.
+    """
     cosine = np.einsum("ij,ij->i", unit(before), unit(after))
     missing = ~(before.any(axis=1) & after.any(axis=1))
     return np.where(missing, np.nan, np.arccos(np.clip(cosine, -1, 1)) / np.pi)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Table
 
 LEAST = 5  # points that determine a conic
 FLAT = 1e-8  # relative: a scatter matrix worse conditioned says nothing
@@ -12,19 +12,35 @@ FLAT = 1e-8  # relative: a scatter matrix worse conditioned says nothing
 
 @dataclass(frozen=True)
 class Ellipse:
-    """Centre (2,) and semi-axes (2,), longer first, in the unit of the points."""
+    """An ellipse in a plane.
+
+    Attributes
+    ----------
+    centre : (2,) float64
+        In the unit of the points.
+    axes : (2,) float64
+        The semi-axes, the longer first, in the same unit.
+    """
 
     centre: Numbers
     axes: Numbers
 
 
-def fit_ellipse(points: Numbers) -> Ellipse | None:
-    """Return the ellipse of least algebraic distance to points (n, 2), or None where there is none.
+def fit_ellipse(points: Table) -> Ellipse | None:
+    """Return the ellipse of least algebraic distance to points of a plane.
 
     Fitzgibbon, Pilu and Fisher (PAMI 1999), in the numerically stable form of
-    Halir and Flusser (WSCG 1998): minimise |D a|^2 under 4 a c - b^2 = 1. None
-    for fewer than five points, for points on a line, and where no solution is
-    an ellipse.
+    Halir and Flusser (WSCG 1998): minimise |D a|^2 under 4 a c - b^2 = 1.
+
+    Parameters
+    ----------
+    points : (n, 2) float64
+        In any unit.
+
+    Returns
+    -------
+    Ellipse or None
+        None for fewer than five points, for points on a line, and where no solution is an ellipse.
     """
     if len(points) < LEAST:
         return None
@@ -35,7 +51,7 @@ def fit_ellipse(points: Numbers) -> Ellipse | None:
     return None if found is None else Ellipse(found[0] * scale + mean, found[1] * scale)
 
 
-def _conic(p: Numbers) -> Numbers | None:
+def _conic(p: Table) -> Numbers | None:
     """Return a, b, c, d, e, f of a x^2 + b x y + c y^2 + d x + e y + f = 0."""
     x, y = p.T
     quadratic, linear = np.stack([x * x, x * y, y * y], axis=1), np.stack([x, y, np.ones_like(x)], axis=1)

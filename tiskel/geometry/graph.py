@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Points
 
 
 class RadiusSource(IntEnum):
@@ -58,7 +58,7 @@ class CurveGraph:
     """
 
     nodes: Points
-    edges: Indices
+    edges: Edges
     radii: Numbers = field(default_factory=lambda: np.zeros(0))
     bridged: Mask = field(default_factory=lambda: np.zeros(0, np.bool_))
     radius_sources: npt.NDArray[np.uint8] = field(default_factory=lambda: np.zeros(0, np.uint8))
@@ -79,10 +79,7 @@ class CurveGraph:
     @cached_property
     def components(self) -> int:
         """The number of connected components."""
-        count = len(self.nodes)
-        ends = self.edges[:, 0], self.edges[:, 1]
-        adjacency = sparse.coo_array((np.ones(len(self.edges)), ends), shape=(count, count))
-        return int(connected_components(adjacency, directed=False)[0]) if count else 0
+        return int(component_labels(len(self.nodes), self.edges).max(initial=-1)) + 1
 
     @property
     def loops(self) -> int:
@@ -102,7 +99,7 @@ class CurveGraph:
     @cached_property
     def lengths(self) -> Numbers:
         """(e,) the length of every edge."""
-        return np.asarray(np.linalg.norm(self.nodes[self.edges[:, 0]] - self.nodes[self.edges[:, 1]], axis=1))
+        return edge_lengths(self.nodes, self.edges)
 
     @property
     def length(self) -> float:
@@ -129,7 +126,7 @@ class CurveGraph:
         return [sorted(others) for others in around]
 
     @cached_property
-    def passages(self) -> Indices:
+    def passages(self) -> Lists:
         """(d, 3) one neighbour, the node, and the other neighbour, of every node with exactly two."""
         found = [(o[0], node, o[1]) for node, o in enumerate(self.neighbours) if len(o) == 2]
         return np.array(found, np.int32).reshape(-1, 3)
@@ -162,24 +159,82 @@ class CurveGraph:
         return into
 
 
-def tidy_edges(edges: Indices) -> Indices:
-    """Return edges with the lower node first, each once, none from a node to itself."""
+def tidy_edges(edges: Edges) -> Edges:
+    """Return edges with the lower node first, each once, none from a node to itself.
+
+    Parameters
+    ----------
+    edges : (e, 2) int32
+        Pairs of nodes in either order, repeats allowed.
+
+    Returns
+    -------
+    (f, 2) int32
+        In ascending order.
+    """
     ordered = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
     return np.unique(ordered[ordered[:, 0] != ordered[:, 1]], axis=0).reshape(-1, 2)
 
 
 def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:
-    """Return (v,) the mean distance of each node's points to it, 0 where it has none."""
+    """Return (v,) the mean distance of each node's points to it, 0 where it has none.
+
+    Parameters
+    ----------
+    nodes : (v, 3) float64
+        In any unit.
+    cloud : (n, 3) float64
+        The points, in the same unit.
+    node_of_point : (n,) int32
+        The node of every point.
+
+    Returns
+    -------
+    (v,) float64
+        In the same unit.
+    """
     distance = np.linalg.norm(cloud - nodes[node_of_point], axis=1)
     counts = np.bincount(node_of_point, minlength=len(nodes))
     return np.asarray(np.bincount(node_of_point, distance, minlength=len(nodes)) / np.maximum(counts, 1))
 
 
-def connected_sets(count: int, links: Indices) -> list[Indices]:
-    """Return the connected sets of things 0 to count that links (l, 2) join, each ascending."""
+def edge_lengths(nodes: Points, edges: Edges) -> Numbers:
+    """Return (e,) the lengths of edges (e, 2) between nodes (v, 3), in their unit."""
+    return np.asarray(np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1))
+
+
+def component_labels(count: int, links: Edges) -> Indices:
+    """Return which connected set each thing is in.
+
+    Parameters
+    ----------
+    count : int
+        How many things there are; they are numbered from 0.
+    links : (l, 2) int32
+        Pairs of them that hang together, in either order, repeats allowed.
+
+    Returns
+    -------
+    (count,) int32
+        The number of the set, from 0, in the order of the sets' first members.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.geometry.graph import component_labels
+    >>> component_labels(4, np.array([[3, 1]], np.int32)).tolist()
+    [0, 1, 2, 1]
+    """
+    if count == 0:
+        return np.zeros(0, np.int32)
     graph = sparse.coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
-    sets, label = connected_components(graph, directed=False)
-    return [np.flatnonzero(label == number).astype(np.int32) for number in range(sets)]
+    return np.asarray(connected_components(graph, directed=False)[1], np.int32)
+
+
+def connected_sets(count: int, links: Edges) -> list[Indices]:
+    """Return the connected sets of things 0 to count - 1 that links (l, 2) join, each ascending, (k,) int32."""
+    label = component_labels(count, links)
+    return [np.flatnonzero(label == number).astype(np.int32) for number in range(int(label.max(initial=-1)) + 1)]
 
 
 def _branches(around: list[list[int]]) -> tuple[Indices, ...]:

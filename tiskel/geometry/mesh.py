@@ -2,12 +2,34 @@
 
 import numpy as np
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Points
 from tiskel.errors import TiskelError
 
 
-def sample_mesh(vertices: Points, faces: Indices, count: int, seed: int = 0) -> Points:
-    """Return points (count, 3), uniform by area on the triangles (m, 3), the same for the same seed."""
+def sample_mesh(vertices: Points, faces: Edges, count: int, seed: int = 0) -> Points:
+    """Return points on the triangles of a mesh, uniform by area.
+
+    Parameters
+    ----------
+    vertices : (v, 3) float64
+        In any unit.
+    faces : (m, 3) int32
+        The vertices of every triangle.
+    count : int
+        How many points.
+    seed : int
+        The same seed gives the same points.
+
+    Returns
+    -------
+    (count, 3) float64
+        In the unit of the vertices.
+
+    Raises
+    ------
+    TiskelError
+        Where the triangles have no area.
+    """
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     areas = np.where(np.isfinite(areas), areas, 0)

@@ -5,23 +5,28 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Lists, Numbers, Points, Stack, Table
 from tiskel.geometry.rings import Rings
 
-Axes = Numbers  #: shape (n, 3, 3), rows by descending eigenvalue
+Axes = Stack  #: shape (n, 3, 3), rows by descending eigenvalue
 
 
-def nearest_neighbours(points: Points, k: int) -> tuple[Indices, Numbers]:
+def nearest_neighbours(points: Points, k: int) -> tuple[Lists, Table]:
     """Return the k nearest of each point, itself included.
 
     Parameters
     ----------
-    points : (n, 3), in any unit, k <= n.
+    points : (n, 3) float64
+        C-contiguous, in any unit.
+    k : int
+        From 1 to n.
 
     Returns
     -------
-    neighbours : (n, k) int32, by distance, ties by index.
-    squares : (n, k), squared distances.
+    neighbours : (n, k) int32
+        Rows of points by distance, ties by index.
+    squares : (n, k) float64
+        Squared distances to them, in the squared unit.
     """
     from tiskel.kernels import neighbours as kernel
 
@@ -38,8 +43,16 @@ class MortonCurve:
 
     Attributes
     ----------
-    points : (n, 3), in this order; order : (n,) int32, their rows; codes : (n,) int64, ascending.
-    low, per_length : (3,) corner of the finest grid, and its cells per length.
+    points : (n, 3) float64
+        The points in this order, in any unit.
+    order : (n,) int32
+        Their rows in the cloud.
+    codes : (n,) int64
+        Their Morton codes, ascending.
+    low : (3,) float64
+        The corner of the finest grid, in the unit of the points.
+    per_length : float
+        How many of its cells go on a unit of length.
     """
 
     points: Points
@@ -49,7 +62,18 @@ class MortonCurve:
     per_length: float
 
     def places(self, queries: Points) -> Indices:
-        """Return where in the order queries (m, 3) would stand; those outside the box at its border."""
+        """Return where in the order places would stand.
+
+        Parameters
+        ----------
+        queries : (m, 3) float64
+            Places in the unit of the points; those outside their bounding box count at its border.
+
+        Returns
+        -------
+        (m,) int32
+            From 0 to n.
+        """
         from tiskel.kernels import neighbours as kernel
 
         codes = np.empty(len(queries), np.int64)
@@ -70,8 +94,23 @@ def morton_curve(points: Points) -> MortonCurve:
     return MortonCurve(np.ascontiguousarray(points[order]), order, codes[order], low, per_length)
 
 
-def principal_axes(points: Points, neighbours: Indices) -> tuple[Numbers, Axes]:
-    """Return eigenvalues (n, 3), descending, and eigenvectors (n, 3, 3), as rows, of neighbourhood covariances."""
+def principal_axes(points: Points, neighbours: Lists) -> tuple[Table, Axes]:
+    """Return the principal axes of neighbourhoods: eigenvalues and eigenvectors of their covariances.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    neighbours : (m, k) int32
+        The rows that make up each neighbourhood.
+
+    Returns
+    -------
+    values : (m, 3) float64
+        Eigenvalues, descending, in the squared unit of the points.
+    axes : (m, 3, 3) float64
+        Unit eigenvectors as rows, in the same order; their signs mean nothing.
+    """
     from tiskel.kernels import axes as kernel
 
     values = np.empty((len(neighbours), 3))
@@ -80,15 +119,24 @@ def principal_axes(points: Points, neighbours: Indices) -> tuple[Numbers, Axes]:
     return values, axes
 
 
-def one_rings(points: Points, centres: Indices, candidates: Indices, planes: Numbers) -> Rings:
+def one_rings(points: Points, centres: Indices, candidates: Lists, planes: Stack) -> Rings:
     """Return the Delaunay one-ring of each centre among its candidates, projected on a plane.
 
     Parameters
     ----------
-    points : (n, 3).
-    centres : (m,) rows of points.
-    candidates : (m, w) rows of points, -1 pads; the centre and points projected onto it are ignored.
-    planes : (m, 2, 3), two orthonormal directions each.
+    points : (n, 3) float64
+        The cloud, in any unit.
+    centres : (m,) int32
+        Rows of points.
+    candidates : (m, w) int32
+        Rows of points, -1 pads; the centre and points projected onto it are ignored.
+    planes : (m, 2, 3) float64
+        Two orthonormal directions each.
+
+    Returns
+    -------
+    Rings
+        One for each centre; members are rows of points.
 
     Notes
     -----
@@ -111,8 +159,25 @@ def one_rings(points: Points, centres: Indices, candidates: Indices, planes: Num
     return Rings(np.ascontiguousarray(members[:, :width]), sizes, closed)
 
 
-def surroundings(points: Points, k: int) -> tuple[Indices, Axes, Rings]:
-    """Return the k nearest neighbours of every point, their principal axes, and the one-rings on the leading two."""
+def surroundings(points: Points, k: int) -> tuple[Lists, Axes, Rings]:
+    """Return the k nearest neighbours of every point, their principal axes, and the one-rings on the leading two.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        C-contiguous, in any unit.
+    k : int
+        From 1 to n; every point is the first of its neighbours.
+
+    Returns
+    -------
+    neighbours : (n, k) int32
+        Rows by distance.
+    axes : (n, 3, 3) float64
+        Unit vectors as rows by descending eigenvalue; the last is the normal, up to its sign.
+    rings : Rings
+        Of all points.
+    """
     neighbours, _ = nearest_neighbours(points, k)
     _, axes = principal_axes(points, neighbours)
     everyone = np.arange(len(points), dtype=np.int32)

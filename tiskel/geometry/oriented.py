@@ -16,7 +16,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import TINY, Indices, Lists, Mask, Numbers, Points
 from tiskel.geometry.neighbours import morton_curve, principal_axes, surroundings
 from tiskel.geometry.rings import Rings
 from tiskel.params import published_neighbours
@@ -34,10 +34,16 @@ class OrientedCloud:
 
     Attributes
     ----------
-    points, normals : (n, 3), normals of unit length, outward.
-    areas : (n,), square units; spacing : their median root.
-    oriented_by : "skeleton" or "propagation".
-    consistency : share of probed points with an inside behind them and an outside before them.
+    points : (n, 3) float64
+        Distinct points of a surface, in any unit.
+    normals : (n, 3) float64
+        Unit vectors out of the body.
+    areas : (n,) float64
+        The area that each point stands for, in the squared unit.
+    oriented_by : str
+        "skeleton" or "propagation"; empty where the caller oriented them.
+    consistency : float
+        The share of probed points with an inside behind them and an outside before them; 0 where nobody looked.
     """
 
     points: Points
@@ -48,24 +54,28 @@ class OrientedCloud:
 
     @property
     def spacing(self) -> float:
-        """The side of the square that a point stands for, in the median."""
+        """The root of the median area, in the unit of the points."""
         return float(np.sqrt(np.median(self.areas)))
 
     @property
     def trusted(self) -> bool:
-        """Whether enough probes lie between an inside and an outside."""
+        """Whether enough points lie between an inside and an outside for winding numbers to mean something."""
         return self.consistency >= TRUSTED
 
     @cached_property
-    def _blocks(self) -> tuple[Points, ...]:
-        """Return what the kernel sums over: points along the Morton curve, and blocks of them."""
+    def _blocks(self) -> tuple[Points, Points, Numbers, Points, Points, Numbers]:
+        """Return what the kernel sums over.
+
+        Of the points along the Morton curve: place, dipole and softening; of
+        blocks of them: centre, sum of dipoles and radius.
+        """
         from tiskel.kernels.winding import BLOCK
 
         curve = morton_curve(self.points)
         areas = self.areas[curve.order]
         dipoles = self.normals[curve.order] * areas[:, None]
         starts = np.arange(0, len(areas), BLOCK)
-        weight = np.maximum(areas, np.finfo(float).tiny)
+        weight = np.maximum(areas, TINY)
         totals = np.add.reduceat(weight, starts)
         centres = np.add.reduceat(curve.points * weight[:, None], starts) / totals[:, None]
         away = np.linalg.norm(curve.points - np.repeat(centres, BLOCK, axis=0)[: len(areas)], axis=1)
@@ -86,7 +96,21 @@ class OrientedCloud:
 
 
 def oriented_cloud(points: Points, targets: Points, seed: int = 0) -> OrientedCloud:
-    """Return the surface of a cloud (n, 3) of distinct points; targets (n, 3) is where each contracts to."""
+    """Return the surface of a cloud, oriented in the way that puts more points between an inside and an outside.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Distinct points, C-contiguous, in any unit.
+    targets : (n, 3) float64
+        Where each of them contracts to, in the same unit.
+    seed : int
+        Of the choice of points that the orientation is tried on.
+
+    Returns
+    -------
+    OrientedCloud
+    """
     neighbours, _, rings = surroundings(points, published_neighbours(len(points)))
     near = np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS])
     normals = principal_axes(points, near)[1][:, 2]
@@ -108,6 +132,18 @@ def checked(surface: OrientedCloud, seed: int) -> OrientedCloud:
 
     One spacing away, or two where that is better: noise reaches further than
     one, thin tubes are hardly thicker than two.
+
+    Parameters
+    ----------
+    surface : OrientedCloud
+        Whose ``consistency`` is not known.
+    seed : int
+        Of the choice of points.
+
+    Returns
+    -------
+    OrientedCloud
+        The same with it.
     """
     probes = np.sort(np.random.default_rng(seed).permutation(len(surface.points))[:PROBES])
     step = surface.normals[probes] * np.sqrt(surface.areas[probes])[:, None]
@@ -119,7 +155,20 @@ def checked(surface: OrientedCloud, seed: int) -> OrientedCloud:
 
 
 def ring_areas(points: Points, rings: Rings) -> Numbers:
-    """Return (n,) a third of the area of each ring's triangles."""
+    """Return (n,) a third of the area of each ring's triangles.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    rings : Rings
+        Of all points.
+
+    Returns
+    -------
+    (n,) float64
+        In the squared unit of the points; 0 where a ring has no triangle.
+    """
     members, sizes = rings.members, rings.sizes
     areas = np.zeros(len(points))
     rows = np.arange(len(points))
@@ -132,11 +181,25 @@ def ring_areas(points: Points, rings: Rings) -> Numbers:
     return areas
 
 
-def propagated_signs(neighbours: Indices, normals: Points) -> tuple[Numbers, Indices]:
-    """Return signs (n,) that make neighbouring normals agree, and the connected part (n,) each sign holds in.
+def propagated_signs(neighbours: Lists, normals: Points) -> tuple[Numbers, Indices]:
+    """Return signs that make neighbouring normals agree.
 
     Along the minimum spanning tree of 1 - |n_i . n_j|, so that signs pass
     between points whose normals say most about each other.
+
+    Parameters
+    ----------
+    neighbours : (n, k) int32
+        The nearest of every point, itself first.
+    normals : (n, 3) float64
+        Unit vectors.
+
+    Returns
+    -------
+    sign : (n,) float64
+        1 or -1; which of the two a whole part has is arbitrary.
+    part : (n,) int32
+        The connected part of the neighbour graph that a sign holds in.
     """
     count = len(normals)
     i = np.repeat(np.arange(count), neighbours.shape[1] - 1)

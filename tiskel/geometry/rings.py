@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Indices, Lists, Masks, Numbers, Points
 
 
 @dataclass(frozen=True)
@@ -19,14 +19,14 @@ class Rings:
     closed : (n,) int32, 1 where the last member connects to the first.
     """
 
-    members: Indices
+    members: Lists
     sizes: Indices
     closed: Indices
 
     def __len__(self) -> int:
         return len(self.sizes)
 
-    def mask(self) -> Mask:
+    def mask(self) -> Masks:
         """Return which entries of members are filled."""
         return np.arange(self.members.shape[1]) < self.sizes[:, None]
 
@@ -40,7 +40,20 @@ class Rings:
 
 
 def smallest_distances(points: Points, rings: Rings) -> Numbers:
-    """Return S_i, the smallest distance from each point to its ring (print: the mean distance)."""
+    """Return S_i, the smallest distance from each point to its ring (print: the mean distance).
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    rings : Rings
+        Of all points.
+
+    Returns
+    -------
+    (n,) float64
+        In the unit of the points; 0 for an empty ring.
+    """
     from tiskel.kernels import laplacian as kernel
 
     out = np.empty(len(points))
@@ -53,6 +66,20 @@ def mean_ring_length(points: Points, rings: Rings, *, count_first_twice: bool) -
 
     The toolbox repeats the first member of a closed ring at its end and counts
     it twice; that sets the first contraction weight, so lbc follows it.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    rings : Rings
+        Of all points.
+    count_first_twice : bool
+        Whether to do as the toolbox.
+
+    Returns
+    -------
+    float
+        In the unit of the points; an empty ring counts as 0.
     """
     from tiskel.kernels import laplacian as kernel
 
@@ -68,6 +95,19 @@ def cotangent_laplacian(points: Points, rings: Rings, cap: float) -> sparse.csr_
     The angles are those opposite edge (i, j) in the triangles of the ring of i,
     so L is not symmetric. A row whose absolute sum passes the cap is scaled
     down to it; a ring without a triangle has a zero row.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    rings : Rings
+        Of all points.
+    cap : float
+        The largest absolute sum of a row, without unit.
+
+    Returns
+    -------
+    (n, n) sparse array, float64
     """
     from tiskel.kernels import laplacian as kernel
 

@@ -8,8 +8,10 @@ would see of it.
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Mask, Numbers, Points
+from tiskel.geometry.frames import across
 from tiskel.geometry.graph import CurveGraph
 
 BATCH = 200_000  # candidates per round: bounds the memory, not the result
@@ -33,6 +35,19 @@ def signed_distance(points: Points, shape: ConeGraph, edge: int) -> Numbers:
 
     Behind the end planes of the cone part a ball is nearest; between them the
     distance is measured along the normal of the slanted side.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Places in the unit of the shape.
+    shape : ConeGraph
+    edge : int
+        Which of its edges.
+
+    Returns
+    -------
+    (n,) float64
+        In the same unit.
     """
     (a, b), (ra, rb) = shape.nodes[shape.edges[edge]], shape.radii[shape.edges[edge]]
     axis, length = b - a, float(np.linalg.norm(b - a))
@@ -50,12 +65,38 @@ def signed_distance(points: Points, shape: ConeGraph, edge: int) -> Numbers:
 
 
 def union_distance(points: Points, shape: ConeGraph) -> Numbers:
-    """Return the smallest signed distance to any part: exact outside, a lower bound on depth inside."""
+    """Return the smallest signed distance to any part; inside it is no more than a bound on the depth.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Places in the unit of the shape.
+    shape : ConeGraph
+
+    Returns
+    -------
+    (n,) float64
+        In the same unit, negative inside; exact outside.
+    """
     return np.asarray(np.min([signed_distance(points, shape, e) for e in range(len(shape.edges))], axis=0))
 
 
 def sample_union(shape: ConeGraph, count: int, generator: np.random.Generator) -> Points:
-    """Return points (count, 3), uniform by area on the surface of the union; points inside another part are removed."""
+    """Return points on the surface of a union, uniform by area; points inside another part are not on it.
+
+    Parameters
+    ----------
+    shape : ConeGraph
+    count : int
+        How many points.
+    generator : numpy.random.Generator
+        Drawn from; the same state gives the same points.
+
+    Returns
+    -------
+    (count, 3) float64
+        In the unit of the shape.
+    """
     areas = np.array([sum(_areas(*_cone(shape, e))) for e in range(len(shape.edges))])
     found: list[Points] = []
     have = 0
@@ -80,12 +121,12 @@ def _visible(shape: ConeGraph, edge: int, count: int, generator: np.random.Gener
     return points[keep]
 
 
-def _cone(shape: ConeGraph, edge: int) -> tuple[Points, Points, float, float]:
+def _cone(shape: ConeGraph, edge: int) -> tuple[Numbers, Numbers, float, float]:
     (a, b), (ra, rb) = shape.nodes[shape.edges[edge]], shape.radii[shape.edges[edge]]
     return a, b, float(ra), float(rb)
 
 
-def _areas(a: Points, b: Points, ra: float, rb: float) -> tuple[float, float, float]:
+def _areas(a: Numbers, b: Numbers, ra: float, rb: float) -> tuple[float, float, float]:
     """Return the areas of the cap at a, the slanted side, and the cap at b."""
     length = float(np.linalg.norm(b - a))
     if length <= abs(ra - rb):
@@ -96,9 +137,32 @@ def _areas(a: Points, b: Points, ra: float, rb: float) -> tuple[float, float, fl
 
 
 def sample_cone(
-    a: Points, b: Points, ra: float, rb: float, count: int, generator: np.random.Generator
-) -> tuple[Points, Indices]:
-    """Return points (count, 3) uniform on a round cone, and for each the end whose ball it lies on, -1 for the side."""
+    a: Numbers, b: Numbers, ra: float, rb: float, count: int, generator: np.random.Generator
+) -> tuple[Points, npt.NDArray[np.intp]]:
+    """Return points on a round cone, uniform by area, and the part that each lies on.
+
+    Parameters
+    ----------
+    a : (3,) float64
+        The centre of one ball.
+    b : (3,) float64
+        The centre of the other, in the same unit.
+    ra : float
+        The radius at a.
+    rb : float
+        The radius at b.
+    count : int
+        How many points.
+    generator : numpy.random.Generator
+        Drawn from.
+
+    Returns
+    -------
+    points : (count, 3) float64
+        In the same unit.
+    end : (count,) int
+        0 on the ball at a, 1 on that at b, -1 on the side.
+    """
     areas = np.array(_areas(a, b, ra, rb))
     part = np.repeat(np.arange(3), generator.multinomial(count, areas / areas.sum()))
     first, second = _even_pairs(count, generator)
@@ -113,10 +177,10 @@ def sample_cone(
     along = np.choose(part, [low, side, high])
     cosine = np.sqrt(1 - sine**2)
     at_a, at_b = np.sqrt(np.maximum(ra**2 - low**2, 0)), np.sqrt(np.maximum(rb**2 - (high - length) ** 2, 0))
-    across = np.choose(part, [at_a, swept * cosine, at_b])
-    u, v = _frame(axis)
+    away = np.choose(part, [at_a, swept * cosine, at_b])
+    u, v = across(axis)
     turn = 2 * np.pi * second
-    points = a + along[:, None] * axis + across[:, None] * (np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v)
+    points = a + along[:, None] * axis + away[:, None] * (np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v)
     return points, np.choose(part, [0, -1, 1])
 
 
@@ -129,11 +193,3 @@ def _even_pairs(count: int, generator: np.random.Generator) -> tuple[Numbers, Nu
     steps = np.arange(count)[:, None] * np.array([1 / plastic, 1 / plastic**2]) + generator.random(2)
     first, second = (steps % 1).T
     return first, second
-
-
-def _frame(axis: Points) -> tuple[Points, Points]:
-    """Return two orthonormal directions across an axis."""
-    least = np.eye(3)[np.abs(axis).argmin()]
-    u = np.cross(axis, least)
-    u /= np.linalg.norm(u)
-    return u, np.cross(axis, u)

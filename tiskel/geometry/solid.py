@@ -10,10 +10,9 @@ not agree on is not decided.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Stack
 from tiskel.geometry.oriented import OrientedCloud, checked
 
 LEVELS = (0.25, 0.3, 0.4)  # winding numbers; noise outside stays below, tubes of one spacing's radius rise above
@@ -23,7 +22,7 @@ MAX_CELLS = 1_000_000
 COARSEST = 2.5  # spacings; on a coarser grid thin parts would be missed
 PROBED = 16384  # points; of larger clouds so many are taken
 
-Grid = npt.NDArray[np.bool_]
+Grid = np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +53,20 @@ def solid_of(surface: OrientedCloud) -> Solid:
 
 
 def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
-    """Return the handles of the solid inside a surface, or None and why they cannot be told."""
+    """Return the handles of the solid inside a surface, or None and why they cannot be told.
+
+    Parameters
+    ----------
+    surface : OrientedCloud
+        With its ``consistency`` checked.
+
+    Returns
+    -------
+    handles : int or None
+        None where they cannot be told.
+    reason : str
+        Why not; empty where they can.
+    """
     if not surface.trusted:
         share = f"{surface.consistency:.0%}"
         return None, f"the normals agree on an inside at {share} of the points only; the cloud is too sparse or open"
@@ -69,14 +81,14 @@ def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
     return found[0], ""
 
 
-def _grid_step(extent: Points, spacing: float) -> float:
+def _grid_step(extent: Numbers, spacing: float) -> float:
     """Return the side of the cells: the spacing's multiple, or what keeps the grid within its limit."""
     step = STEP * spacing
     cells = float(np.prod(extent / step + 4))
     return step * float(np.cbrt(max(1.0, cells / MAX_CELLS)))
 
 
-def _winding_grid(surface: OrientedCloud, low: Points, high: Points, step: float) -> Numbers:
+def _winding_grid(surface: OrientedCloud, low: Numbers, high: Numbers, step: float) -> Stack:
     """Return winding numbers on a grid: at every eighth place, and at all places where it matters.
 
     These are the ones near the surface, and those between an inside and an
@@ -96,7 +108,22 @@ def _winding_grid(surface: OrientedCloud, low: Points, high: Points, step: float
 
 
 def betti_numbers(cubes: Grid) -> tuple[int, int, int]:
-    """Return components, loops and cavities of a union of closed unit cubes, given as a grid of booleans."""
+    """Return the Betti numbers of a union of closed unit cubes.
+
+    Parameters
+    ----------
+    cubes : (i, j, k) bool
+        Which cubes of a grid belong to it.
+
+    Returns
+    -------
+    components : int
+        Pieces; cubes that share a corner hang together.
+    loops : int
+        Handles, all pieces together.
+    cavities : int
+        Hollows that no way leads out of.
+    """
     padded = np.pad(cubes, 1)
     edges = sum(int(_touched(padded, axes).sum()) for axes in ((0, 1), (0, 2), (1, 2)))
     faces = sum(int(_touched(padded, (axis,)).sum()) for axis in range(3))

@@ -6,11 +6,11 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Floats, Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.params import Solver
 
-Factorisation = Callable[[Points], Points]
+Factorisation = Callable[[Floats], Floats]  #: right-hand side (n,) or (n, c) to solution
 
 
 class SingularStep(Exception):
@@ -22,7 +22,30 @@ def contracted(
 ) -> Points:
     """Return the cloud P' that solves (W_L^2 L^T L + W_H^2) P' = W_H^2 P, all three coordinates at once.
 
-    Raises SingularStep where the matrix has no factorisation or the solution is not finite.
+    Parameters
+    ----------
+    laplacian : (n, n) sparse array
+        L.
+    contraction : float
+        W_L.
+    attraction : (n,) float64
+        W_H of every point.
+    points : (n, 3) float64
+        P, in normalised coordinates.
+    solver : Solver
+        A key of ``BACKENDS``.
+
+    Returns
+    -------
+    (n, 3) float64
+        P'.
+
+    Raises
+    ------
+    SingularStep
+        Where the matrix has no factorisation or the solution is not finite.
+    TiskelError
+        Where the solver is not installed.
     """
     squares = attraction**2
     normal = sparse.csc_array(contraction**2 * (laplacian.T @ laplacian) + sparse.diags_array(squares))
@@ -50,7 +73,7 @@ def _cholmod(normal: sparse.csc_array) -> Factorisation:
     lower = sparse.coo_array(sparse.tril(normal))
     symmetric = spmatrix(lower.data, *(axis.astype(int) for axis in lower.coords), normal.shape)
 
-    def solve(right: Points) -> Points:
+    def solve(right: Floats) -> Floats:
         out = matrix(np.asfortranarray(right))
         try:
             cholmod.linsolve(symmetric, out)

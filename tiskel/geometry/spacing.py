@@ -9,18 +9,23 @@ nearest other is half of it; on a square lattice it is 0.89 of the lattice's sid
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Points, Table
 
 NEIGHBOURS = 4  # others that are counted: the four sides of a square lattice
 
 
-def spacings_from(squares: Numbers) -> Numbers:
-    """Return (n,) the spacing about each point.
+def spacings_from(squares: Table) -> Numbers:
+    """Return the spacing about each point.
 
     Parameters
     ----------
     squares : (n, k) float64
         Squared distances to the k nearest points, the point itself first.
+
+    Returns
+    -------
+    (n,) float64
+        In the root of that unit.
 
     Examples
     --------

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Points
 from tiskel.errors import TiskelError
 from tiskel.io.clouds import load_cloud, parse_cloud
 from tiskel.io.curves import load_curve, parse_curve
@@ -40,7 +40,7 @@ class Measurable:
     points: Points | None = None
     origin: Points | None = None
     nodes: Points | None = None
-    edges: Indices | None = None
+    edges: Edges | None = None
 
 
 def gather(

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
+from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.version import version
 
@@ -179,7 +180,7 @@ def source_of(data: bytes, stage: str, name: str) -> dict[str, str]:
 VERB = {"contraction": "contract", "skeleton": "skeleton"}
 
 
-def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -> npt.NDArray[np.float64]:
+def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -> Points:
     """Return three named columns of a table of n rows as (n, 3) float64."""
     fields: Mapping[str, Any] = table.dtype.fields or {}
     kinds = [(fields[name][0], fields[name][1]) for name in names]
@@ -190,7 +191,7 @@ def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -
     return np.stack([np.asarray(table[name], np.float64) for name in names], axis=1).reshape(-1, 3)
 
 
-def xyz(points: npt.NDArray[np.float64], names: Sequence[str] = ("x", "y", "z")) -> dict[str, npt.NDArray[np.float64]]:
+def xyz(points: Points, names: Sequence[str] = ("x", "y", "z")) -> dict[str, Numbers]:
     """Return points (n, 3) as three columns by name."""
     return {name: points[:, axis] for axis, name in enumerate(names)}
 

@@ -151,7 +151,20 @@ class Trace:
 
 
 def survivors(rows: Indices, merged_into: Indices) -> Indices:
-    """Return (n,), for each point of a cloud the place in rows (m,) of the one it was merged into in the end."""
+    """Return for each point of a cloud where the one is that it was merged into in the end.
+
+    Parameters
+    ----------
+    rows : (m,) int32
+        The points that are left.
+    merged_into : (n,) int32
+        The row that each removed point was merged into; -1 elsewhere.
+
+    Returns
+    -------
+    (n,) int32
+        Places in ``rows``.
+    """
     everyone = np.arange(len(merged_into), dtype=np.int32)
     place = np.full(len(merged_into), -1, np.int32)
     place[rows] = np.arange(len(rows), dtype=np.int32)

@@ -14,9 +14,10 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import Delaunay
 
-from tiskel.arrays import FLATNESS, Indices, Numbers, Points
+from tiskel.arrays import FLATNESS, TINY, Edges, Numbers, Points, Table
+from tiskel.geometry.graph import edge_lengths
 
-NO_CYCLES: Numbers = np.zeros((0, 2))
+NO_CYCLES: Table = np.zeros((0, 2))
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Barcode:
     """
 
     deaths: Numbers
-    cycles: Numbers
+    cycles: Table
 
 
 def barcode(points: Points, *, loops: bool = False) -> Barcode:
@@ -74,20 +75,20 @@ def barcode(points: Points, *, loops: bool = False) -> Barcode:
     return Barcode(deaths, _by_ratio(np.asarray(diagrams[1], np.float64)) if loops else NO_CYCLES)
 
 
-def _by_ratio(bars: Numbers) -> Numbers:
+def _by_ratio(bars: Table) -> Table:
     return np.asarray(bars[np.argsort(-bars[:, 1] / bars[:, 0], kind="stable")])
 
 
-def _persistence(points: Points, dimension: int) -> list[Numbers]:
+def _persistence(points: Points, dimension: int) -> list[Table]:
     from ripser import ripser
 
     edges = delaunay_edges(points)
-    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    lengths = edge_lengths(points, edges)
     distances = sparse.coo_matrix((lengths, (edges[:, 0], edges[:, 1])), shape=(len(points), len(points)))
     return list(ripser(distances.tocsr(), maxdim=dimension, distance_matrix=True)["dgms"])
 
 
-def delaunay_edges(points: Points) -> Indices:
+def delaunay_edges(points: Points) -> Edges:
     """Return (e, 2) int32, the edges of the Delaunay triangulation of points (n, 3), lower row first.
 
     A point that the triangulation leaves out, because it coincides with
@@ -107,9 +108,9 @@ def delaunay_edges(points: Points) -> Indices:
     return np.stack([keys // len(points), keys % len(points)], axis=1).astype(np.int32)
 
 
-def _within_span(points: Points) -> Points:
+def _within_span(points: Points) -> Table:
     """Return coordinates (n, r) in the span of the points, r below 3 where they are flat to rounding."""
     centred = points - points.mean(axis=0)
     _, singular, axes = np.linalg.svd(centred, full_matrices=False)
-    rank = int((singular > FLATNESS * max(singular[0], np.finfo(float).tiny)).sum()) if singular[0] > 0 else 0
+    rank = int((singular > FLATNESS * max(singular[0], TINY)).sum()) if singular[0] > 0 else 0
     return centred if rank == 3 else np.asarray(centred @ axes[:rank].T)

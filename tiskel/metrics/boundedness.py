@@ -18,8 +18,8 @@ from functools import cache
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
-from tiskel.arrays import Indices, Mask, Numbers, Points, diagonal
-from tiskel.geometry.curve import unit
+from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, diagonal
+from tiskel.geometry.frames import unit
 from tiskel.geometry.neighbours import MortonCurve, morton_curve
 
 BOUNDED = 0.75  # beta of a point on a flat, endless surface
@@ -101,7 +101,7 @@ class Coverage:
     """
 
     shares: Numbers
-    seen: Indices
+    seen: Lists
     coincident: Indices
 
 
@@ -166,7 +166,7 @@ def outside_hull(places: Points, cloud: Points) -> Mask:
     return np.concatenate([(block @ faces[:, :3].T + faces[:, 3] > margin).any(axis=1) for block in blocks])
 
 
-def hull_share(place: Points, cloud: Points) -> float:
+def hull_share(place: Numbers, cloud: Points) -> float:
     """Return beta of one place (3,) in a cloud (n, 3), from the hull of the directions that matter."""
     vectors = unit(cloud[_that_matter(_cells(place, cloud))] - place)
     return _hull_area(_thinned(vectors) if len(vectors) > MANY else vectors) / (4 * np.pi)
@@ -179,7 +179,7 @@ def _thinned(vectors: Points) -> Points:
     return np.asarray(vectors[np.unique(keys, return_index=True)[1]])
 
 
-def _cells(place: Points, cloud: Points) -> Indices:
+def _cells(place: Numbers, cloud: Points) -> Indices:
     """Return the cells in which a place sees the points of a cloud, -1 for a point at the place."""
     from tiskel.kernels import coverage as kernel
 
@@ -201,7 +201,7 @@ def _that_matter(cells: Indices) -> Mask:
 
 
 @cache
-def touching_cells() -> Indices:
+def touching_cells() -> Lists:
     """Return (6 side^2, w) the cells that touch each cell of the cube map, itself among them and again as padding."""
     from tiskel.kernels.coverage import SIDE
 
@@ -223,8 +223,7 @@ def cell_centres(side: int) -> Points:
             face = np.empty((side * side, 3))
             face[:, axis], face[:, (axis + 1) % 3], face[:, (axis + 2) % 3] = sign, u.ravel(), v.ravel()
             centres.append(face)
-    stacked = np.concatenate(centres)
-    return np.asarray(stacked / np.linalg.norm(stacked, axis=1)[:, None])
+    return unit(np.concatenate(centres))
 
 
 def _hull_area(vectors: Points) -> float:

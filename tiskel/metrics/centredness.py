@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from tiskel.arrays import Indices, Mask, Numbers, Points, diagonal
+from tiskel.arrays import Indices, Mask, Numbers, Points, Table, diagonal
 from tiskel.geometry.curve import CurveSamples
 from tiskel.geometry.ellipse import fit_ellipse
+from tiskel.geometry.frames import across
 from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.params import MetricParams
 
@@ -144,15 +144,12 @@ def slab_members(cloud: Points, centres: Points, directions: Points, half: float
     return [np.asarray(part) for part in np.split(rows, ends[:-1])] if len(ends) else []
 
 
-def in_plane(vectors: Points, direction: npt.NDArray[np.float64]) -> Numbers:
+def in_plane(vectors: Points, direction: Numbers) -> Table:
     """Return (n, 2) the coordinates of vectors (n, 3) on the plane across a unit direction (3,)."""
-    helper = np.eye(3)[np.argmin(np.abs(direction))]
-    u = np.cross(direction, helper)
-    u /= np.linalg.norm(u)
-    return np.asarray(vectors @ np.stack([u, np.cross(direction, u)], axis=1))
+    return np.asarray(vectors @ np.ascontiguousarray(across(direction).T))
 
 
-def before_gap(flat: Numbers, gap: float) -> Numbers:
+def before_gap(flat: Table, gap: float) -> Table:
     """Return the points of a section before its first gap, nearest first.
 
     Parameters
@@ -172,7 +169,7 @@ def before_gap(flat: Numbers, gap: float) -> Numbers:
     return np.asarray(flat[order[: jumps[0] + 1]] if len(jumps) else flat[order])
 
 
-def section_centredness(section: Numbers) -> tuple[float, bool]:
+def section_centredness(section: Table) -> tuple[float, bool]:
     """Return c of the origin in a section (n, 2), and whether mean and largest distance stood in for an ellipse.
 
     References

@@ -14,7 +14,7 @@ them than its surface has loops is not decided: each handle is one of those.
 
 from dataclasses import dataclass
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Table
 from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.solid import solid_handles
 from tiskel.metrics.subject import Subject
@@ -44,12 +44,12 @@ class Loops:
     surface: int | None
     solid: int | None
     graph: int | None
-    bars: Numbers
+    bars: Table
     points: int
     reasons: dict[str, str]
 
 
-def count_loops(bars: Numbers, surface: OrientedCloud, subject: Subject, params: MetricParams) -> Loops:
+def count_loops(bars: Table, surface: OrientedCloud, subject: Subject, params: MetricParams) -> Loops:
     """Count the loops of a surface, of the solid inside it, and of a curve.
 
     Parameters

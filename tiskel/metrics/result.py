@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Edges, Indices, Mask, Numbers, Points
 from tiskel.geometry.curve import CurveSamples
 from tiskel.metrics.boundedness import COVERED, HULL, OUTSIDE, Boundedness
 from tiskel.metrics.centredness import Sections
@@ -81,7 +81,7 @@ class CurveQuality:
     """
 
     nodes: Points
-    edges: Indices
+    edges: Edges
     samples: CurveSamples
     boundedness: Boundedness
     inside: Mask | None

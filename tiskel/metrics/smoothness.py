@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Lists, Numbers, Points
 from tiskel.geometry.curve import turns, two_sided
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.neighbours import nearest_neighbours
@@ -11,7 +11,7 @@ from tiskel.params import MetricParams
 HAIRPIN = 0.5  # D_n below which a curve turns back: less than a right angle between its edges
 
 
-def nearest_others(points: Points, count: int) -> Indices:
+def nearest_others(points: Points, count: int) -> Lists:
     """Return (m, count) int32, the rows of the nearest other points of each of points (m, 3), nearest first.
 
     Fewer columns where there are not so many. Where many points coincide, any of
@@ -23,7 +23,7 @@ def nearest_others(points: Points, count: int) -> Indices:
     return np.asarray(near[~itself].reshape(len(points), -1))
 
 
-def tangents(points: Points, others: Indices) -> Points:
+def tangents(points: Points, others: Lists) -> Points:
     """Return (m, 3) the unit tangent at each of points (m, 3), from the rows of its neighbours, others (m, k).
 
     It is the leading eigenvector of their scatter about the point; NaN where all of them are at its place.

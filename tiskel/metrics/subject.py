@@ -7,16 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import (
-    Frame,
-    Indices,
-    Points,
-    as_points,
-    check_solid,
-    finite_rows,
-    first_of_duplicates,
-    normalisation,
-)
+from tiskel.arrays import Edges, Frame, Points, as_points, check_solid, finite_rows, first_of_duplicates, normalisation
 from tiskel.errors import TiskelError
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.graph import CurveGraph, tidy_edges
@@ -149,7 +140,7 @@ def _points(
     return skeletal, originals, how
 
 
-def _curve(nodes: npt.ArrayLike | None, edges: npt.ArrayLike | None, warnings: list[str]) -> tuple[Points, Indices]:
+def _curve(nodes: npt.ArrayLike | None, edges: npt.ArrayLike | None, warnings: list[str]) -> tuple[Points, Edges]:
     """Return nodes and edges, each edge once, lower node first, none from a node to itself."""
     vertices = NO_POINTS if nodes is None or np.size(nodes) == 0 else as_points(nodes)
     bad = np.flatnonzero(~finite_rows(vertices))

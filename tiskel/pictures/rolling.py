@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Table
+from tiskel.geometry.frames import across
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
@@ -87,13 +88,11 @@ def _on_sphere(panel: Any, runs: Sequence[Trajectory]) -> None:
     panel.tick_params(labelsize=7)
 
 
-def _towards(direction: Numbers) -> Numbers:
+def _towards(direction: Numbers) -> Table:
     """Return two axes across a direction, and the direction (3, 3)."""
     length = float(np.linalg.norm(direction))
     ahead = direction / length if length > 0 else np.array([0.0, 0.0, 1.0])
-    across = np.cross(np.eye(3)[np.abs(ahead).argmin()], ahead)
-    across /= np.linalg.norm(across)
-    return np.stack([across, np.cross(ahead, across), ahead])
+    return np.concatenate([-across(ahead), ahead[None]])
 
 
 def _against_time(

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Points
+from tiskel.arrays import Numbers, Points
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.rings import around
@@ -79,7 +79,7 @@ def _section(polar: Any, flat: Any, s: FittedSurface) -> None:
     flat.tick_params(labelsize=6)
 
 
-def _places(s: FittedSurface) -> Points:
+def _places(s: FittedSurface) -> Numbers:
     """Return v of the fitted points."""
     from scipy.spatial import cKDTree
 

@@ -1,10 +1,9 @@
 """Closing the open ends of a tube with flat discs of points."""
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Lists, Numbers, Points
+from tiskel.geometry.graph import connected_sets
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.spacing import spacings_from
 
@@ -43,7 +42,7 @@ def cap_points(points: Points) -> Points:
     return np.concatenate([np.empty((0, 3)), *discs])
 
 
-def widest_gaps(points: Points, neighbours: Indices) -> Numbers:
+def widest_gaps(points: Points, neighbours: Lists) -> Numbers:
     """Return the widest angle between successive neighbours of each point, on the plane of its neighbourhood.
 
     Parameters
@@ -68,15 +67,14 @@ def widest_gaps(points: Points, neighbours: Indices) -> Numbers:
     return np.asarray(np.fmax(np.nanmax(np.diff(angles, axis=1), axis=1), angles[:, 0] + 2 * np.pi - last))
 
 
-def _groups(boundary: Indices, neighbours: Indices) -> list[Indices]:
+def _groups(boundary: Indices, neighbours: Lists) -> list[Indices]:
     """Return the connected groups of boundary points in the neighbour graph."""
     place = np.full(len(neighbours), -1)
     place[boundary] = np.arange(len(boundary))
     linked = place[neighbours[boundary]]
     rows = np.repeat(np.arange(len(boundary)), (linked >= 0).sum(axis=1))
-    graph = sparse.coo_array((np.ones(len(rows)), (rows, linked[linked >= 0])), shape=(len(boundary),) * 2)
-    count, label = connected_components(graph, directed=False)
-    return [boundary[label == group] for group in range(count)]
+    links = np.stack([rows, linked[linked >= 0]], axis=1)
+    return [boundary[group] for group in connected_sets(len(boundary), links)]
 
 
 def _disc(rim: Points, spacing: float) -> Points:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Points, Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.endings import Ending, ends_of_branch
@@ -59,10 +59,10 @@ class BodyTrajectory:
     """
 
     t: Numbers
-    state: Numbers
+    state: Table
     contact: Points
     position: Points
-    orientation: Numbers
+    orientation: Table
     margin: Numbers
     status: RollStatus
     reason: str

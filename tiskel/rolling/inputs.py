@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Triple
@@ -43,7 +43,7 @@ class Inputs:
     """
 
     t: Numbers
-    values: Numbers
+    values: Table
     warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -95,12 +95,12 @@ def pauses(t: Numbers) -> tuple[str, ...]:
     return (f"inputs: no row between t = {t[row]:g} and {t[row + 1]:g}; values there are straight in between",)
 
 
-def sphere_axes(q: Numbers) -> Numbers:
+def sphere_axes(q: Numbers) -> Table:
     """Return R3 (3, 3), the sphere's own frame at the contact in the axes of the object's, from F^T Q."""
     return turn_of(float(chart_of(np.eye(3), rotation_of(q))[2]))
 
 
-def of_the_object(turn: Numbers, omega: Triple, velocity: Triple) -> tuple[Triple, Triple]:
+def of_the_object(turn: Table, omega: Triple, velocity: Triple) -> tuple[Triple, Triple]:
     """Return omega and V of the object relative to the sphere from those of the sphere relative to the object.
 
     ``turn`` (3, 3) takes the axes that these are given in to those of the contact frame.

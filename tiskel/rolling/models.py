@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Pair, Triple, local_object_rates, object_rates
@@ -21,7 +21,7 @@ class RollingModel(Protocol):
     def forms(self, u: Scalar, v: Scalar) -> Forms:
         """Return the forms that the equations are in."""
 
-    def frame(self, u: float, v: float) -> Numbers:
+    def frame(self, u: float, v: float) -> Table:
         """Return the contact frame (3, 3) on the surface as it is, x, y and z as columns."""
 
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
@@ -49,7 +49,7 @@ class GlobalModel:
     def forms(self, u: Scalar, v: Scalar) -> Forms:
         return forms_of(self.surface.jet(u, v), self.sigma)
 
-    def frame(self, u: float, v: float) -> Numbers:
+    def frame(self, u: float, v: float) -> Table:
         return frame_at(self.surface, self.sigma, u, v)
 
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
@@ -77,7 +77,7 @@ class LocalModel:
     def forms(self, u: Scalar, v: Scalar) -> Forms:
         return forms_of(straightened(self.tube, u, v), self.sigma)
 
-    def frame(self, u: float, v: float) -> Numbers:
+    def frame(self, u: float, v: float) -> Table:
         return frame_at(self.tube, self.sigma, u, v)
 
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:

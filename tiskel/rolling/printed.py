@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Floats, Points, Stack, Table
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Pair, Triple, object_rates
 from tiskel.slicing.fitted import FittedSurface
@@ -41,7 +41,7 @@ class PrintedModel:
     tube: Tube
     sigma: float
     radius: float
-    operators: Numbers
+    operators: Floats
 
     @staticmethod
     def of(surface: FittedSurface, params: RollParams, radius: float) -> "PrintedModel":
@@ -65,13 +65,13 @@ class PrintedModel:
         a, b, c = (value if value.ndim else float(value) for value in (flat[0, 0], flat[0, 1], flat[1, 1]))
         return forms._replace(K=((a * m11, a * m12 + b * m22), (b * m11, b * m12 + c * m22)))
 
-    def frame(self, u: float, v: float) -> Numbers:
+    def frame(self, u: float, v: float) -> Table:
         return frame_at(self.tube, self.sigma, u, v)
 
     def rates(self, u: float, v: float, forms: Forms, omega: Triple, velocity: Triple) -> Pair:
         return object_rates(forms, self.radius, omega, velocity)
 
-    def _operator(self, u: Numbers, v: Numbers) -> Numbers:
+    def _operator(self, u: Floats, v: Floats) -> Floats:
         rows, around = self.operators.shape[:2]
         across, along = np.mod(u, 2 * pi) / (2 * pi) * around, np.clip(v / V_STOP, 0, 1) * (rows - 1)
         i, j = np.minimum(along.astype(int), rows - 2), across.astype(int) % around
@@ -82,7 +82,7 @@ class PrintedModel:
         return np.asarray((1 - s) * low + s * high)
 
 
-def shape_operators(cloud: Points, places: Points, frames: Numbers, k: int) -> Numbers:
+def shape_operators(cloud: Points, places: Points, frames: Stack, k: int) -> Stack:
     """Return (p, 3, 3) how the normals of the k points nearest to each place turn along its tangent plane.
 
     ``frames`` (p, 3, 3) hold x, y and the normal z as columns. Symmetric; least squares.

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Floats, Numbers, Points, Stack, Table
+from tiskel.geometry.frames import step_lengths
 from tiskel.rolling.equations import controllability, margin
 from tiskel.rolling.models import RollingModel, tube_of
 from tiskel.rolling.solution import Solution
@@ -14,8 +15,8 @@ FINE, LEAST = 2000, 10  # places along the ways whose lengths are compared: at l
 
 
 def read(
-    surface: ParametricSurface, model: RollingModel, sigma: float, radius: float, y: Numbers, psi_start: float
-) -> dict[str, Numbers]:
+    surface: ParametricSurface, model: RollingModel, sigma: float, radius: float, y: Table, psi_start: float
+) -> dict[str, Floats]:
     """Return the columns of a trajectory from solved states (n, 6).
 
     The quaternions are those of F^T Q; Q is reported with the frame of the
@@ -53,7 +54,7 @@ def path_lengths(model: RollingModel, radius: float, solution: Solution) -> tupl
     (m11, m12), (_, m22) = model.forms(*((y[1:, :2] + y[:-1, :2]) / 2).T).M
     du, dv = np.diff(y[:, :2], axis=0).T
     on_sphere = -rotation_of(y[:, 2:])[:, 2]  # Q^T (-z_o)
-    chords = np.linalg.norm(np.diff(on_sphere, axis=0), axis=1)
+    chords = step_lengths(on_sphere)
     arcs = 2 * radius * np.arcsin(np.minimum(chords / 2, 1))
     return float(np.hypot(m11 * du + m12 * dv, m22 * dv).sum()), float(arcs.sum())
 
@@ -64,11 +65,11 @@ def fine_times(steps: Numbers) -> Numbers:
     return np.interp(np.arange((len(steps) - 1) * pieces + 1) / pieces, np.arange(len(steps)), steps)
 
 
-def frames_of(forms: Forms) -> Numbers:
+def frames_of(forms: Forms) -> Stack:
     """Return (n, 3, 3), x, y and z as columns."""
     return np.stack([columns(side) for side in forms[:3]], axis=-1)
 
 
-def columns(vector: Vector) -> Numbers:
+def columns(vector: Vector) -> Points:
     """Return (n, 3)."""
     return np.stack(np.broadcast_arrays(*vector), axis=-1)

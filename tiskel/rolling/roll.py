@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import TINY, Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.endings import Ending, endings
@@ -149,7 +149,7 @@ def _elsewhere(surface: ParametricSurface, params: RollParams, radius: float) ->
     u, v = even_places(surface, *GRID)
     free = margin(forms_of(surface.jet(u, v), params.sigma), radius)
     if not (free > 0).any():
-        largest = 1 / max(float(1 / radius - free.max()), np.finfo(float).tiny)
+        largest = 1 / max(float(1 / radius - free.max()), TINY)
         return f"it fits nowhere, a sphere of less than {largest:.4g} somewhere"
     best = np.unravel_index(int(np.argmax(free)), free.shape)
     return f"start at u = {u[best]:.4g}, v = {v[best]:.4g}, or take a smaller one"

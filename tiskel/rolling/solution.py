@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Table
 from tiskel.params import RollParams
 from tiskel.rolling.endings import Ending
 from tiskel.rolling.inputs import Inputs
@@ -40,9 +40,9 @@ class Solution:
     """
 
     t: Numbers
-    states: Numbers
+    states: Table
     steps: Numbers
-    at: Callable[[Numbers], Numbers]
+    at: Callable[[Numbers], Table]
     status: RollStatus
     reason: str
     evaluations: int

@@ -12,27 +12,27 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Floats, Numbers, Stack, Table
 from tiskel.surfaces.jets import Scalar
 
 
-def chart_frame(u_s: float, v_s: float) -> Numbers:
+def chart_frame(u_s: float, v_s: float) -> Table:
     """Return F_s (3, 3), its columns x_s, y_s and z_s."""
     cu, su, cv, sv = cos(u_s), sin(u_s), cos(v_s), sin(v_s)
     return np.array([[-su * cv, -sv, cu * cv], [su * sv, -cv, -cu * sv], [cu, 0.0, su]])
 
 
-def turn_of(psi: float) -> Numbers:
+def turn_of(psi: float) -> Table:
     """Return R3 (3, 3)."""
     return np.array([[cos(psi), -sin(psi), 0], [-sin(psi), -cos(psi), 0], [0, 0, -1.0]])
 
 
-def orientation(frame: Numbers, u_s: float, v_s: float, psi: float) -> Numbers:
+def orientation(frame: Table, u_s: float, v_s: float, psi: float) -> Table:
     """Return Q = F R3 F_s^T (3, 3)."""
     return np.asarray(frame @ turn_of(psi) @ chart_frame(u_s, v_s).T)
 
 
-def chart_of(frame: Numbers, rotation: Numbers) -> tuple[Scalar, Scalar, Scalar]:
+def chart_of(frame: Floats, rotation: Floats) -> tuple[Scalar, Scalar, Scalar]:
     """Return u_s, v_s and psi from F and Q, (..., 3, 3) each; v_s and psi within half a turn of 0."""
     place = -np.einsum("...ji,...j->...i", rotation, frame[..., 2])  # Q^T (-z_o) = f_s / R_s
     u_s, v_s = np.arcsin(np.clip(place[..., 2], -1, 1)), np.arctan2(-place[..., 1], place[..., 0])
@@ -42,12 +42,12 @@ def chart_of(frame: Numbers, rotation: Numbers) -> tuple[Scalar, Scalar, Scalar]
     return u_s, v_s, np.arctan2(-across[..., 1], across[..., 0])
 
 
-def quaternion_of(rotation: Numbers) -> Numbers:
+def quaternion_of(rotation: Table) -> Numbers:
     """Return the unit quaternion (4,) of a rotation (3, 3)."""
     return np.asarray(quaternions_of(rotation[None])[0])
 
 
-def quaternions_of(rotations: Numbers) -> Numbers:
+def quaternions_of(rotations: Stack) -> Table:
     """Return unit quaternions (n, 4) of rotations (n, 3, 3), without jumps of sign."""
     from scipy.spatial.transform import Rotation
 
@@ -56,7 +56,7 @@ def quaternions_of(rotations: Numbers) -> Numbers:
     return np.asarray(q * np.cumprod(np.concatenate([[1.0], flips]))[:, None])
 
 
-def rotation_of(q: Numbers) -> Numbers:
+def rotation_of(q: Floats) -> Floats:
     """Return the rotations (..., 3, 3) of quaternions (..., 4), which need not be of unit length."""
     w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
     rows = [

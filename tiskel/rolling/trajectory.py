@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers, Points, Table
 from tiskel.params import RollParams
 
 
@@ -103,10 +103,10 @@ class Trajectory:
     """
 
     t: Numbers
-    state: Numbers
+    state: Table
     contact: Points
     centre: Points
-    orientation: Numbers
+    orientation: Table
     object_radius: Numbers
     margin: Numbers
     determinant: Numbers

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import TINY, Numbers, Points
 from tiskel.geometry.bspline import WEIGHTS, Strip, fit_strip
+from tiskel.geometry.frames import step_lengths
 from tiskel.surfaces.tube import V_STOP
 
 DENSE = 8  # places that the length is measured at, per interval
@@ -59,8 +60,8 @@ def fit_axis(
 
 def arc_share(places: Points) -> Numbers:
     """Return (k,) the share of the length of a polyline (k, 3) at its vertices, from 0 to 1."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
-    return np.asarray(along / max(along[-1], np.finfo(float).tiny))
+    along = np.concatenate([[0.0], np.cumsum(step_lengths(places))])
+    return np.asarray(along / max(along[-1], TINY))
 
 
 def sharpest(axis: Strip) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.bspline import Strip, fit_strip
+from tiskel.geometry.frames import across, unit
 from tiskel.slicing.axis import EXACT
 from tiskel.surfaces.tube import V_STOP
 
@@ -46,11 +47,11 @@ def fit_field(
     """
     v = np.linspace(0, V_STOP, DENSE * intervals, endpoint=not axis.periodic)
     rows = axis.along(v)
-    tangent = _unit(rows[:, 1])
+    tangent = unit(rows[:, 1])
     if m == "normal":
         bend = np.cross(rows[:, 1], rows[:, 2])
         if np.linalg.norm(bend, axis=1).min() * radius > STRAIGHT * np.linalg.norm(rows[:, 1], axis=1).min() ** 3:
-            return _strip(axis, v, _unit(np.cross(bend, rows[:, 1])), intervals), "normal", ""
+            return _strip(axis, v, unit(np.cross(bend, rows[:, 1])), intervals), "normal", ""
         why = "the curve is straight somewhere and has no normal there"
     elif isinstance(m, str):
         why = ""
@@ -71,8 +72,7 @@ def _rotation_minimising(places: Points, tangents: Points, closed: bool) -> Poin
 
     Of a loop, what is left to turn when it closes is shared out evenly.
     """
-    start = np.eye(3)[np.abs(tangents[0]).argmin()]
-    field = [_unit(np.cross(tangents[0], start)[None])[0]]
+    field = [across(tangents[0])[0]]
     following = [(places[-1], tangents[-1], places[0], tangents[0])] if closed else []
     steps = [*zip(places[:-1], tangents[:-1], places[1:], tangents[1:], strict=True), *following]
     for place, tangent, after, tangent_after in steps:
@@ -86,16 +86,12 @@ def _rotation_minimising(places: Points, tangents: Points, closed: bool) -> Poin
 
 
 def _reflected(vector: Numbers, tangent: Numbers, step: Numbers, tangent_after: Numbers) -> Numbers:
-    def mirrored(a: Numbers, across: Numbers) -> Numbers:
-        square = across @ across
-        return a if square == 0 else np.asarray(a - 2 * (across @ a) / square * across)
+    def mirrored(a: Numbers, normal: Numbers) -> Numbers:
+        square = normal @ normal
+        return a if square == 0 else np.asarray(a - 2 * (normal @ a) / square * normal)
 
     return mirrored(mirrored(vector, step), tangent_after - mirrored(tangent, step))
 
 
 def _strip(axis: Strip, v: Numbers, values: Points, intervals: int) -> Strip:
     return fit_strip(v, values, np.ones(len(v)), intervals, V_STOP, periodic=axis.periodic, penalty=EXACT)
-
-
-def _unit(vectors: Points) -> Points:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1), np.finfo(float).tiny)[:, None])

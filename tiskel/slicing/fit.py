@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import Strip
+from tiskel.geometry.frames import step_lengths
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.spacing import spacing_of
 from tiskel.params import SurfaceParams
@@ -175,7 +176,7 @@ def _span(sections: tuple[Section, ...]) -> tuple[int, int]:
 def _slices(path: Path, nodes: Points, interval: float) -> int:
     if len(path.nodes) < LEAST_NODES:
         raise _Rejected(f"it has {len(path.nodes)} node{'s' * (len(path.nodes) > 1)}, a curve needs {LEAST_NODES}")
-    length = float(np.linalg.norm(np.diff(nodes[path.nodes], axis=0), axis=1).sum())
+    length = float(step_lengths(nodes[path.nodes]).sum())
     count = round(length / interval)
     if count < LEAST_SLICES:
         raise _Rejected(f"it is {length:.4g} long, too short for {LEAST_SLICES} slices {interval:.4g} apart")

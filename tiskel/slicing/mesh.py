@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import TINY, Edges, Numbers, Points, Stack
 from tiskel.geometry.bspline import Strip
 from tiskel.geometry.ellipse import fit_ellipse
 from tiskel.slicing.fitted import FittedSurface
@@ -29,7 +29,7 @@ class Mesh:
     """
 
     vertices: Points
-    triangles: Indices
+    triangles: Edges
 
 
 def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
@@ -86,17 +86,17 @@ def distances_to_mesh(points: Points, mesh: Mesh) -> Numbers:
     return best
 
 
-def _to_triangles(points: Points, corners: Numbers) -> Numbers:
+def _to_triangles(points: Points, corners: Stack) -> Numbers:
     """Return (k,) the distances of points to triangles (k, 3, 3), one each."""
     sides = np.roll(corners, -1, axis=1) - corners
     offset = points[:, None] - corners
-    square = np.maximum((sides**2).sum(axis=2), np.finfo(float).tiny)
+    square = np.maximum((sides**2).sum(axis=2), TINY)
     share = np.clip((offset * sides).sum(axis=2) / square, 0, 1)
     to_sides = np.linalg.norm(offset - share[..., None] * sides, axis=2).min(axis=1)
     normal = np.cross(sides[:, 0], sides[:, 1])
     inside = ((np.cross(sides, offset) * normal[:, None]).sum(axis=2) >= 0).all(axis=1)
     height = np.abs((offset[:, 0] * normal).sum(axis=1))
-    height /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
+    height /= np.maximum(np.linalg.norm(normal, axis=1), TINY)
     return np.asarray(np.where(inside, height, to_sides))
 
 

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.csgraph import dijkstra
 
-from tiskel.arrays import Indices
+from tiskel.arrays import TINY, Indices
 from tiskel.errors import TiskelError
-from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.frames import step_lengths
+from tiskel.geometry.graph import CurveGraph, component_labels
 
 LEAST_NODES = 3  # fewer have no direction to follow
 
@@ -82,9 +83,9 @@ def longest_path(curve: CurveGraph) -> Indices:
     count, ends = len(curve.nodes), np.flatnonzero(curve.degrees == 1)
     if len(ends) < 2:
         return max(curve.branches, key=lambda path: _length(curve, path))
-    lengths = np.maximum(curve.lengths, np.finfo(float).tiny)
+    lengths = np.maximum(curve.lengths, TINY)
     linked = sparse.coo_array((lengths, (curve.edges[:, 0], curve.edges[:, 1])), shape=(count, count)).tocsr()
-    part = connected_components(linked, directed=False)[1]
+    part = component_labels(count, curve.edges)
     distance, before = dijkstra(linked, directed=False, indices=ends, return_predecessors=True)
     far = np.where(part[ends][:, None] == part[ends][None, :], distance[:, ends], -1.0)
     start, stop = np.unravel_index(int(far.argmax()), far.shape)
@@ -95,4 +96,4 @@ def longest_path(curve: CurveGraph) -> Indices:
 
 
 def _length(curve: CurveGraph, path: Indices) -> float:
-    return float(np.linalg.norm(np.diff(curve.nodes[path], axis=0), axis=1).sum())
+    return float(step_lengths(curve.nodes[path]).sum())

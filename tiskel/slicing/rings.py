@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Numbers, Points, Table
 from tiskel.geometry.bspline import Strip
+from tiskel.geometry.graph import component_labels
 from tiskel.surfaces.tube import Moving, moving_frame
 
 SECTORS = 36  # directions that a section is looked at in
@@ -87,7 +86,7 @@ def cut(
     return found
 
 
-def ring_of(plane: Numbers, link: float) -> Indices:
+def ring_of(plane: Table, link: float) -> Indices:
     """Return which points of a section are the ring around its centre.
 
     Of the parts that hang together, the one that is nearest in most directions,
@@ -108,8 +107,7 @@ def ring_of(plane: Numbers, link: float) -> Indices:
     if len(plane) == 0:
         return np.zeros(0, np.int32)
     pairs = cKDTree(plane).query_pairs(link, output_type="ndarray")
-    linked = sparse.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(plane), len(plane)))
-    part = connected_components(linked, directed=False)[1]
+    part = component_labels(len(plane), pairs)
     r, u = np.linalg.norm(plane, axis=1), np.arctan2(plane[:, 1], plane[:, 0])
     sector = np.floor((u + np.pi) / (2 * np.pi) * SECTORS).astype(int) % SECTORS
     order = np.lexsort((r, sector))

@@ -5,7 +5,7 @@ from enum import Enum
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import MAD, Numbers, Table
 from tiskel.params import SurfaceParams
 from tiskel.slicing.rings import Ring
 
@@ -13,7 +13,6 @@ RIDGE = 1e-7  # weight of the squares of coefficients, times the fourth power of
 WIDE, PROBES, HELD = 0.35, 12, 1e-4  # gaps in radians; places in each; weight of roughness there, per point
 AWAY = 1.5  # the longest of its points that a series may be, and one over the shortest
 HUBER, ROUNDS = 2.5, 4  # deviations beyond which points count less; rounds of weighting
-MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
 OFF_SHARE = 0.1  # of the points that may be further off than a star-shaped section allows
 SLOPES = 3  # columns for how the section changes along the curve: its mean and its first harmonics
 
@@ -104,19 +103,19 @@ def gaps_of(u: Numbers) -> tuple[Numbers, Numbers]:
     return ordered, np.diff(np.append(ordered, ordered[0] + 2 * np.pi))
 
 
-def waves_of(u: Numbers, order: int) -> Numbers:
+def waves_of(u: Numbers, order: int) -> Table:
     """Return (k, 2 N) for angles u (k,): sin u, cos u, sin 2u, cos 2u ... up to order N."""
     i = np.arange(1, order + 1)
     return np.stack([np.sin(u[:, None] * i), np.cos(u[:, None] * i)], axis=2).reshape(len(u), -1)
 
 
-def basis_of(ring: Ring, v: float, order: int) -> Numbers:
+def basis_of(ring: Ring, v: float, order: int) -> Table:
     """Return (k, 2 N + 4) the columns of the fit: 1, sin u, cos u, sin 2u ..., and three that grow along the curve."""
     series = np.concatenate([np.ones((len(ring.u), 1)), waves_of(ring.u, order)], axis=1)
     return np.concatenate([series, (ring.v - v)[:, None] * series[:, :SLOPES]], axis=1)
 
 
-def held_in_gaps(u: Numbers, order: int) -> Numbers:
+def held_in_gaps(u: Numbers, order: int) -> Table:
     """Return (2 N + 1, 2 N + 1) the roughness of a series in the gaps of angles u (k,): the mean square of R_uu there.
 
     Points say nothing of waves that fit into a gap between them; this does.
@@ -139,7 +138,7 @@ def runs_away(solution: Numbers, r: Numbers, order: int) -> bool:
     return bool(fitted.max() > AWAY * r.max() or fitted.min() < r.min() / AWAY)
 
 
-def normal_matrix(basis: Numbers, weights: Numbers, held: Numbers) -> Numbers:
+def normal_matrix(basis: Table, weights: Numbers, held: Table) -> Table:
     """Return the matrix of weighted least squares, with what holds the coefficients that no point determines.
 
     Parameters
@@ -164,12 +163,12 @@ def normal_matrix(basis: Numbers, weights: Numbers, held: Numbers) -> Numbers:
     return np.asarray(matrix)
 
 
-def solved(basis: Numbers, r: Numbers, weights: Numbers, held: Numbers) -> Numbers:
+def solved(basis: Table, r: Numbers, weights: Numbers, held: Table) -> Numbers:
     """Return (2 N + 4,) the coefficients that fit distances r (k,); other arguments as in :func:`normal_matrix`."""
     return np.linalg.solve(normal_matrix(basis, weights, held), basis.T @ (weights * r))
 
 
-def robust_weights(ring: Ring, basis: Numbers, order: int) -> Numbers:
+def robust_weights(ring: Ring, basis: Table, order: int) -> Numbers:
     """Return (k,) the weights of the points of a ring: 1, or less for those that are far off the series.
 
     Parameters

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Table
 from tiskel.surfaces.jets import Jet, ParametricSurface, Scalar, Vector, cross, dot, scaled
 
 Form = tuple[tuple[Scalar, Scalar], tuple[Scalar, Scalar]]
@@ -81,6 +81,6 @@ def principal_curvatures(forms: Forms) -> tuple[Scalar, Scalar]:
     return mean - spread, mean + spread
 
 
-def frame_at(surface: ParametricSurface, sigma: float, u: float, v: float) -> Numbers:
+def frame_at(surface: ParametricSurface, sigma: float, u: float, v: float) -> Table:
     """Return the contact frame (3, 3), x, y and z as columns."""
     return np.asarray(np.array(forms_of(surface.jet(u, v), sigma)[:3], float).T)

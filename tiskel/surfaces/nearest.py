@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Numbers, Table
 from tiskel.errors import TiskelError
 from tiskel.surfaces.jets import ParametricSurface
 
@@ -12,7 +12,7 @@ GRID = 96, 400  # first guesses around and along
 ROUNDS, ENOUGH = 50, 1e-14  # Newton steps; the last one, in radians
 
 
-def even_places(surface: ParametricSurface, around: int, along: int) -> tuple[Numbers, Numbers]:
+def even_places(surface: ParametricSurface, around: int, along: int) -> tuple[Table, Table]:
     """Return u and v (along, around) of an even grid; a surface without end in v is taken from -10 to 10."""
     low, high = surface.v_range
     period = surface.periods[1]

@@ -11,12 +11,13 @@ import cmath
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.bspline import Strip, joined
+from tiskel.geometry.frames import step_lengths
 from tiskel.surfaces.jets import Jet, Scalar, Vector, combined, cross, dot, plus, scaled
 
 V_STOP = pi  # v runs from 0 to pi along the skeleton curve
@@ -120,7 +121,7 @@ class Tube:
     def at(self, u: Scalar, v: Scalar) -> tuple[Moving, Radius]:
         """Return frame and radius at numbers u and v, or at arrays of one shape."""
         if np.ndim(v) == 0 and np.ndim(u) == 0:
-            rows = self._strip.at(float(v)).tolist()
+            rows: list[Any] = self._strip.at(float(v)).tolist()
             p, m = ([tuple(row[i : i + 3]) for row in rows] for i in (0, 3))
             return moving_frame(p, m), radius_of([row[6:] for row in rows], cmath.exp(1j * u))
         u, v = np.broadcast_arrays(u, v)
@@ -155,7 +156,7 @@ class Tube:
 
     def length(self, places: int = 400) -> float:
         """Return the length of the skeleton curve."""
-        return float(np.linalg.norm(np.diff(self.curve(np.linspace(0, V_STOP, places)), axis=0), axis=1).sum())
+        return float(step_lengths(self.curve(np.linspace(0, V_STOP, places))).sum())
 
     def curve(self, v: Numbers) -> Points:
         """Return (m, 3) places on the skeleton curve."""

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Points
 
 LONGEST_QUOTE = 160  #: characters of a file that a message repeats
-NO_FACES: Indices = np.empty((0, 3), np.int32)
+NO_FACES: Edges = np.empty((0, 3), np.int32)
 Properties = Mapping[str, npt.NDArray[Any]]
 
 
@@ -31,7 +31,7 @@ class Parsed:
     """
 
     points: Points
-    faces: Indices = field(default_factory=lambda: NO_FACES)
+    faces: Edges = field(default_factory=lambda: NO_FACES)
     properties: Properties = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 

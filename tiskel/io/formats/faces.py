@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Indices
+from tiskel.arrays import Edges
 from tiskel.errors import TiskelError
 from tiskel.io.formats.base import NO_FACES
 
 
-def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any], count: int, name: str) -> Indices:
+def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any], count: int, name: str) -> Edges:
     """Return polygons as triangles that fan out from their first corners, in the order of the polygons.
 
     Parameters

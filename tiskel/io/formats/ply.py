@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Points
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.formats.base import NO_FACES, Format, Parsed, short
@@ -68,7 +68,7 @@ def _axes(table: Any, holder: str, name: str) -> list[str]:
     return [names[axis] for axis in "xyz"]
 
 
-def _triangles(file: Any, name: str) -> Indices:
+def _triangles(file: Any, name: str) -> Edges:
     """Return faces as triangles; none where the file has none."""
     if "face" not in file or "vertex" not in file or len(file["face"].data) == 0:
         return NO_FACES

@@ -113,7 +113,7 @@ def _commented(table: Table, separator: str | None, width: int) -> Columns:
     return Columns()
 
 
-def _numbers(table: Table, separator: str | None, columns: Columns) -> tuple[Numbers, Columns]:
+def _numbers(table: Table, separator: str | None, columns: Columns) -> tuple[Points, Columns]:
     """Return x, y, z and the other columns that are numbers."""
     load = partial(np.loadtxt, table.rows, delimiter=separator, comments=None, ndmin=2)
     first = cells(table.rows[0], separator)

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Numbers
+from tiskel.arrays import Stack
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.rings import Rings
@@ -169,7 +169,7 @@ def _places(column: Any, count: int, name: str, *, none: bool = False) -> Any:
     return values
 
 
-def _history(file: Any, count: int) -> Numbers:
+def _history(file: Any, count: int) -> Stack:
     if "history" not in file:
         return np.zeros((0, count, 3))
     return ply.points_of(file["history"].data).reshape(-1, count, 3)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Mask, Numbers
+from tiskel.arrays import Mask, Numbers, Points, Table
 from tiskel.io import ply
 from tiskel.metrics.boundedness import Boundedness
 from tiskel.metrics.result import CurveQuality, PointQuality, Quality
@@ -27,7 +27,7 @@ def dump_heat(quality: Quality) -> bytes:
     return ply.dump([ply.element("vertex", columns)], "metrics", {"params": ply.plain(quality.params)})
 
 
-Part = tuple[Numbers, Numbers]
+Part = tuple[Points, Table]
 
 
 def _points(p: PointQuality | None) -> Part:
@@ -44,7 +44,7 @@ def _curve(c: CurveQuality | None) -> list[Part]:
     return [(c.samples.points, samples), (c.nodes[c.vertices], vertices)]
 
 
-def _columns(kind: int, count: int, bounded: Boundedness | None, *more: Numbers | Mask | None) -> Numbers:
+def _columns(kind: int, count: int, bounded: Boundedness | None, *more: Numbers | Mask | None) -> Table:
     measured = (None, None) if bounded is None else (bounded.beta, bounded.bounded)
     columns = [np.full(count, float(kind))]
     columns += [np.full(count, np.nan) if value is None else np.asarray(value, float) for value in (*measured, *more)]

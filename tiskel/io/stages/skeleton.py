@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Indices, Mask
+from tiskel.arrays import Edges, Indices, Mask
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.stages.contraction import ORIGIN
@@ -179,7 +179,7 @@ def _nodes(column: Any, count: int) -> Indices:
     return nodes
 
 
-def _edges(edge: Any, count: int) -> Indices:
+def _edges(edge: Any, count: int) -> Edges:
     edges = np.stack([_nodes(edge["vertex1"], count), _nodes(edge["vertex2"], count)], axis=1)
     if len(np.unique(np.sort(edges, axis=1), axis=0)) < len(edges) or (edges[:, 0] == edges[:, 1]).any():
         raise ValueError("an edge is there twice, or leads nowhere")

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import DEGREE, Strip
 from tiskel.io import ply
@@ -169,7 +170,7 @@ def parse_surfaces(data: bytes, name: str) -> Surfaces:
     return Surfaces(surfaces, rejected, cloud)
 
 
-def _surface_of(one: dict[str, Any], cloud: "np.ndarray[Any, np.dtype[np.float64]]") -> FittedSurface:
+def _surface_of(one: dict[str, Any], cloud: Points) -> FittedSurface:
     closed = bool(one["closed"])
     axis, field, series = (_strip(one[key], closed) for key in ("axis", "field", "series"))
     if len({len(strip.coefficients) for strip in (axis, field, series)}) > 1:

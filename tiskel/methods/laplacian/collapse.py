@@ -3,16 +3,30 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Edges, Indices, Numbers, Points
 from tiskel.geometry.rings import Rings
 
 
-def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Indices:
-    """Return edges (e, 2) between samples, lower index first, sorted.
+def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Edges:
+    """Join samples that are neighbours.
 
     For each point the first member of its ring, in ring order, that belongs to
     another sample joins the two; a sample without neighbours is joined to its
     nearest one (Cao et al. 2010, section 4).
+
+    Parameters
+    ----------
+    rings : Rings
+        Of the n contracted points.
+    owner : (n,) int32
+        The sample that owns each point.
+    nodes : (v, 3) float64
+        Where the samples are.
+
+    Returns
+    -------
+    (e, 2) int32
+        Pairs of samples, the lower first, ascending, each once.
     """
     owners = np.where(rings.mask(), owner[rings.members], owner[:, None])
     foreign = owners != owner[:, None]
@@ -27,10 +41,8 @@ def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Indices:
     return np.unique(edges, axis=0).astype(np.int32)
 
 
-def collapse_triangles(nodes: Points, edges: Indices) -> tuple[Points, Indices, Indices]:
+def collapse_triangles(nodes: Points, edges: Edges) -> tuple[Points, Edges, Indices]:
     """Collapse edges of triangles until none is left.
-
-    Returns nodes (v, 3), edges (e, 2), and for each node before the one after.
 
     The toolbox means to take the edge of lowest mean degree first and the
     shortest among equals. What it computes, and what reproduces its published
@@ -39,6 +51,22 @@ def collapse_triangles(nodes: Points, edges: Indices) -> tuple[Points, Indices, 
     end in an adjacency matrix where a survivor joins the *columns* of the
     edges it inherits and its own row stays as it was. When that finds no
     triangle any more, both ends are told of every edge and the search goes on.
+
+    Parameters
+    ----------
+    nodes : (v, 3) float64
+        Where the samples are, in any unit.
+    edges : (e, 2) int32
+        Pairs of them.
+
+    Returns
+    -------
+    nodes : (w, 3) float64
+        Those that are left, in their order.
+    edges : (f, 2) int32
+        Pairs of them, the lower first, ascending; no three make a triangle.
+    into : (v,) int32
+        For each node before the one after.
     """
     position = dict(enumerate(nodes))
     around: dict[int, set[int]] = {i: set() for i in range(len(nodes))}
@@ -71,7 +99,7 @@ def _symmetrise(around: dict[int, set[int]]) -> bool:
     return bool(missing)
 
 
-def _cheapest(position: dict[int, Points], around: dict[int, set[int]]) -> tuple[int, int] | None:
+def _cheapest(position: dict[int, Numbers], around: dict[int, set[int]]) -> tuple[int, int] | None:
     """Return the edge (lost, kept) with the lowest key, the first found among equals."""
     best, key = None, (np.inf, np.inf)
     for i in sorted(around):
@@ -88,8 +116,8 @@ def _cheapest(position: dict[int, Points], around: dict[int, set[int]]) -> tuple
 
 
 def _compacted(
-    position: dict[int, Points], around: dict[int, set[int]], into: Indices
-) -> tuple[Points, Indices, Indices]:
+    position: dict[int, Numbers], around: dict[int, set[int]], into: Indices
+) -> tuple[Points, Edges, Indices]:
     """Number the nodes that are left from zero and return the edges that either end knows of."""
     left = sorted(position)
     place = {node: i for i, node in enumerate(left)}

@@ -23,7 +23,21 @@ SINGLE = "the cloud contracted to a single node: it has no elongated part at thi
 def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:
     """Return the curve of a contracted cloud.
 
-    Raises TiskelError where the trace has no rings: it is another method's.
+    Parameters
+    ----------
+    trace : Trace
+        Of lbc or gls, in normalised coordinates.
+    params : LaplacianParams
+        ``radius`` of the balls, in diagonals of the cloud, and ``raw`` count.
+
+    Returns
+    -------
+    MethodCurve
+
+    Raises
+    ------
+    TiskelError
+        Where the trace has no rings: it is another method's.
     """
     if trace.rings is None:
         raise TiskelError("the contraction has no rings; run tiskel contract again with --method lbc or gls")
@@ -41,7 +55,23 @@ def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:
 
 
 def without_spurs(graph: CurveGraph, cloud: Points, node_of_point: Indices) -> tuple[CurveGraph, Indices]:
-    """Return the graph without spurs, and the node of every point; those of a spur go to the junction it hung on."""
+    """Return a graph without its spurs; their points go to the junctions that they hung on.
+
+    Parameters
+    ----------
+    graph : CurveGraph
+    cloud : (n, 3) float64
+        The points, in the unit of the graph.
+    node_of_point : (n,) int32
+        The node of every point.
+
+    Returns
+    -------
+    graph : CurveGraph
+        With the radii of what is left.
+    node_of_point : (n,) int32
+        In its nodes.
+    """
     into = graph.without_spurs()
     kept = np.flatnonzero(into == np.arange(len(into)))
     place = np.full(len(into), -1, np.int32)

@@ -42,7 +42,21 @@ class _State:
 
 
 def contract_gls(points: Points, params: GlsParams, weights: Numbers | None = None) -> Trace:
-    """Contract and reduce until the explained score settles; points normalised, weights (n,) as in lbc."""
+    """Contract and reduce until the explained score settles.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in normalised coordinates.
+    params : GlsParams
+    weights : (n,) float64, optional
+        What W_L of every point is multiplied by; as in lbc.
+
+    Returns
+    -------
+    Trace
+        Its points are those that no merge removed.
+    """
     watch = Stopwatch()
     with watch.measure("rings"):
         state = _start(points, params)
@@ -85,7 +99,18 @@ def contract_gls(points: Points, params: GlsParams, weights: Numbers | None = No
 
 
 def explained_score(points: Points) -> float:
-    """Return e = (2 l1 + l2 + l3) / (2 (l1 + l2 + l3)) of the eigenvalues of the cloud's covariance."""
+    """Return e = (2 l1 + l2 + l3) / (2 (l1 + l2 + l3)) of the eigenvalues of the cloud's covariance.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Two at least, not all in one place; in any unit.
+
+    Returns
+    -------
+    float
+        From 2/3 for a ball to 1 for a line, l1 the largest eigenvalue.
+    """
     values = np.linalg.eigvalsh(np.cov(points.T))
     return float((values.sum() + values[2]) / (2 * values.sum()))
 

@@ -19,9 +19,20 @@ from tiskel.timing import Stopwatch
 
 
 def contract_lbc(points: Points, params: LbcParams, weights: Numbers | None = None) -> Trace:
-    """Contract until the ratio of summed ring sizes falls by less than the stop ratio; points normalised.
+    """Contract until the ratio of summed ring sizes falls by less than the stop ratio.
 
-    weights (n,) multiply W_L point by point, as in S-LBC (Meyer et al. 2023), where parts of one thickness share one.
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in normalised coordinates.
+    params : LbcParams
+    weights : (n,) float64, optional
+        Multiply W_L point by point, as in S-LBC (Meyer et al. 2023), where parts of one thickness share one; None: 1.
+
+    Returns
+    -------
+    Trace
+        A contraction without a single step holds the points as they came.
     """
     watch = Stopwatch()
     with watch.measure("rings"):
@@ -60,7 +71,20 @@ def contract_lbc(points: Points, params: LbcParams, weights: Numbers | None = No
 
 
 def published_rings(points: Points, k: int) -> Rings:
-    """Return the one-rings of the cloud in the order of the toolbox, which its first weight depends on."""
+    """Return the one-rings of the cloud in the order of the toolbox, which its first weight depends on.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    k : int
+        How many nearest a ring is made of, the point itself among them.
+
+    Returns
+    -------
+    Rings
+        Of all points.
+    """
     neighbours, _, rings = surroundings(points, k)
     return in_published_order(points, neighbours, rings)
 
@@ -69,12 +93,39 @@ def one_step(
     here: Points,
     rings: Rings,
     contraction: float,
-    attraction: Points,
+    attraction: Numbers,
     params: LbcParams,
     watch: Stopwatch,
     weights: Numbers | None = None,
 ) -> Points:
-    """Return the contracted cloud: the Laplacian of the cloud as it is, over its original rings, solved once."""
+    """Return the contracted cloud: the Laplacian of the cloud as it is, over its original rings, solved once.
+
+    Parameters
+    ----------
+    here : (n, 3) float64
+        The cloud as it is, in normalised coordinates.
+    rings : Rings
+        Of the cloud before all contraction.
+    contraction : float
+        W_L.
+    attraction : (n,) float64
+        W_H of every point.
+    params : LbcParams
+        The cap of the cotangents and the solver count.
+    watch : Stopwatch
+        Gets the times of ``laplacian`` and ``solve``.
+    weights : (n,) float64, optional
+        What W_L of every point is multiplied by; None: 1.
+
+    Returns
+    -------
+    (n, 3) float64
+
+    Raises
+    ------
+    SingularStep
+        Where the equations have no solution.
+    """
     with watch.measure("laplacian"):
         laplacian = weighted(cotangent_laplacian(here, rings, params.cotangent_cap), weights)
     with watch.measure("solve"):
@@ -82,19 +133,64 @@ def one_step(
 
 
 def weighted(laplacian: sparse.csr_array, weights: Numbers | None) -> sparse.csr_array:
-    """Return the Laplacian with its rows times the weights (n,): what multiplies W_L of a point."""
+    """Return the Laplacian with its rows times the weights.
+
+    Parameters
+    ----------
+    laplacian : (n, n) sparse array
+        L.
+    weights : (n,) float64, optional
+        What W_L of every point is multiplied by; None: 1.
+
+    Returns
+    -------
+    (n, n) sparse array
+    """
     return laplacian if weights is None else sparse.csr_array(sparse.diags_array(weights) @ laplacian)
 
 
 def grew(points: Points, original: Points, params: LaplacianParams) -> bool:
-    """Tell whether a side of the bounding box has grown past the limit."""
+    """Tell whether a side of the bounding box has grown past the limit.
+
+    Parameters
+    ----------
+    points : (m, 3) float64
+        The contracted points.
+    original : (n, 3) float64
+        The cloud before all contraction, in the same coordinates.
+    params : LaplacianParams
+        ``box_growth`` is the limit, a factor.
+
+    Returns
+    -------
+    bool
+    """
     return bool((np.ptp(points, axis=0) > params.box_growth * np.ptp(original, axis=0)).any())
 
 
 def next_weights(
-    contraction: float, first_sizes: Points, sizes: Points, params: LaplacianParams
-) -> tuple[float, Points]:
-    """W_L <- s_L W_L; W_H,i <- W_H(0) S_i(0) / S_i(k); both capped (Cao et al. 2010, section 3.3)."""
+    contraction: float, first_sizes: Numbers, sizes: Numbers, params: LaplacianParams
+) -> tuple[float, Numbers]:
+    """Return W_L <- s_L W_L and W_H,i <- W_H(0) S_i(0) / S_i(k) for the next step (Cao et al. 2010, section 3.3).
+
+    Parameters
+    ----------
+    contraction : float
+        W_L of this step.
+    first_sizes : (n,) float64
+        S_i(0), the ring sizes before all contraction.
+    sizes : (n,) float64
+        S_i(k), those after this step; where both are 0, W_H is 1.
+    params : LaplacianParams
+        Growth s_L and the caps of both weights.
+
+    Returns
+    -------
+    contraction : float
+        W_L, capped.
+    attraction : (n,) float64
+        W_H, capped.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         attraction = np.nan_to_num(first_sizes / sizes, nan=1.0, posinf=np.inf)
     return min(contraction * params.growth, params.max_contraction_weight), np.minimum(

@@ -17,7 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, Stack
+from tiskel.geometry.frames import across, unit
 from tiskel.geometry.neighbours import one_rings
 from tiskel.geometry.rings import Rings
 
@@ -30,15 +31,17 @@ class Merge:
 
     Attributes
     ----------
-    merged_into : (n,) int32, the row a removed point was merged into, -1 for the others.
-    rings : of all rows; those of removed points have no meaning.
+    merged_into : (n,) int32
+        The row that each removed point was merged into; -1 for the others.
+    rings : Rings
+        Of all rows; those of removed points have no meaning.
     """
 
     merged_into: Indices
     rings: Rings
 
     def kept(self) -> Indices:
-        """Return the rows (m,) of the points that are left."""
+        """Return (m,) the rows that stay, ascending."""
         return np.flatnonzero(self.merged_into < 0).astype(np.int32)
 
 
@@ -50,11 +53,28 @@ def stage_function(
 
     Parameters
     ----------
-    origin, points : (n, 3), before all contraction and just contracted.
-    delta : (n, 3), Laplacian coordinates L P, of the step's L and the cloud before its solve.
-    first_sizes, sizes : (n,), s_i(0) and s_i(k).
-    shrinkage : psi' = epsilon psi.
-    contraction_weight : s_L^(k+2) w_l(0).
+    origin : (n, 3) float64
+        The points before all contraction, in normalised coordinates.
+    points : (n, 3) float64
+        The points just contracted.
+    delta : (n, 3) float64
+        Laplacian coordinates L P, of the step's L and the cloud before its solve.
+    rings : Rings
+        Of the points, as the step found them.
+    first_sizes : (n,) float64
+        Ring sizes s_i(0).
+    sizes : (n,) float64
+        Ring sizes s_i(k).
+    shrinkage : float
+        psi' = epsilon psi.
+    contraction_weight : float
+        s_L^(k+2) w_l(0).
+    guard : float
+        Stands in for eta s_i(0) where that is not positive.
+
+    Returns
+    -------
+    (n,) float64
     """
     from tiskel.kernels import reduction as kernel
 
@@ -77,12 +97,26 @@ def stage_function(
 
 
 def matching(points: Points, rings: Rings, marked: Mask) -> Indices:
-    """Return for each point the one it merges into, -1 for those that stay.
+    """Match points that may merge with ring members.
 
     Each marked point asks for its nearest ring member; among the pairs that
     share a point the one asked for by the lowest index wins, again and again,
     until no pair is left. That is the greedy matching in index order, whatever
     the number of threads.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The contracted points.
+    rings : Rings
+        Of all of them.
+    marked : (n,) bool
+        Which may merge.
+
+    Returns
+    -------
+    (n,) int32
+        For each point the row it merges into; -1 for those that stay.
     """
     from tiskel.kernels import reduction as kernel
 
@@ -104,6 +138,22 @@ def merge(origin: Points, rings: Rings, merged_into: Indices, directions: Points
     Ring i becomes the one-ring of i among the members of both rings, on their
     original positions, projected along directions[i]; every other ring only
     renames. A merge whose ring would fall below three members does not happen.
+
+    Parameters
+    ----------
+    origin : (n, 3) float64
+        The points before all contraction.
+    rings : Rings
+        Of all points, as the step found them.
+    merged_into : (n,) int32
+        A matching: the row that each point merges into, -1 for those that stay.
+    directions : (n, 3) float64
+        What each merged ring is projected along, of any length but zero.
+
+    Returns
+    -------
+    Merge
+        With the merges that happened.
     """
     merged_into = merged_into.copy()
     while True:
@@ -118,7 +168,20 @@ def merge(origin: Points, rings: Rings, merged_into: Indices, directions: Points
 
 
 def rename(rings: Rings, merged_into: Indices) -> Rings:
-    """Return all rings with removed members under their new names, repeats and the point itself dropped."""
+    """Return all rings with removed members under their new names, repeats and the point itself dropped.
+
+    Parameters
+    ----------
+    rings : Rings
+        Of all n points.
+    merged_into : (n,) int32
+        The new name of every removed point; -1 for the others.
+
+    Returns
+    -------
+    Rings
+        As wide as before.
+    """
     from tiskel.kernels import reduction as kernel
 
     names = np.where(merged_into >= 0, merged_into, np.arange(len(merged_into))).astype(np.int32)
@@ -127,16 +190,23 @@ def rename(rings: Rings, merged_into: Indices) -> Rings:
     return Rings(members, sizes, rings.closed)
 
 
-def projections(directions: Points) -> Numbers:
-    """Return for each direction two orthonormal vectors across it, (m, 2, 3)."""
-    unit = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    least = np.eye(3)[np.abs(unit).argmin(axis=1)]
-    first = np.cross(unit, least)
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
-    return np.ascontiguousarray(np.stack([first, np.cross(unit, first)], axis=1))
+def projections(directions: Points) -> Stack:
+    """Return for each direction two orthonormal vectors across it.
+
+    Parameters
+    ----------
+    directions : (m, 3) float64
+        Of any length but zero.
+
+    Returns
+    -------
+    (m, 2, 3) float64
+        C-contiguous, as the kernel of the rings wants them.
+    """
+    return np.ascontiguousarray(across(unit(directions)))
 
 
-def _unions(rings: Rings, keepers: Indices, removed: Indices) -> Indices:
+def _unions(rings: Rings, keepers: Indices, removed: Indices) -> Lists:
     """Return both rings of each pair side by side, repeats blanked out."""
     both = np.concatenate([rings.members[keepers], rings.members[removed]], axis=1)
     order = np.argsort(both, axis=1, kind="stable")

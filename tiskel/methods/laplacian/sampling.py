@@ -5,19 +5,33 @@ import heapq
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Indices, Numbers, Points
 
 UNCLAIMED = -1
 
 
 def front_samples(points: Points, radius: float) -> tuple[Indices, Indices]:
-    """Return the rows of the samples, and for each point the sample that owns it.
+    """Sample a contracted cloud by a front of balls.
 
     Of the points already claimed, the one farthest from its sample looks into
     the ball around it. Where the ball holds an unclaimed point it becomes a
     sample and claims the points of its ball that are nearer to it than to their
     present sample. A new front starts at the next unclaimed point when the old
     one is exhausted (Cao et al. 2010, section 4, as in the toolbox).
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The contracted cloud, in any unit.
+    radius : float
+        Of the balls, in the same unit.
+
+    Returns
+    -------
+    samples : (v,) int32
+        Rows of points, in the order they were taken.
+    owner : (n,) int32
+        For each point the sample that owns it.
     """
     tree = cKDTree(points)
     unclaimed = _Unclaimed(points, tree, radius)
@@ -59,6 +73,7 @@ class _Unclaimed:
         self.looks = 0
 
     def may_be_near(self, at: int) -> bool:
+        """Tell whether an unclaimed point may be in the ball about a point; never no where one is."""
         self.looks += 1
         if self.looks > len(self.rows) // 8:
             self._forget_claimed()
@@ -70,7 +85,7 @@ class _Unclaimed:
             self.rows, self.tree = left, cKDTree(self.points[left])
 
 
-def _claim(points: Points, ball: Indices, at: int, sample: int, owner: Indices, distance: Points) -> Indices:
+def _claim(points: Points, ball: Indices, at: int, sample: int, owner: Indices, distance: Numbers) -> Indices:
     """Give the points of a ball to a new sample where it is nearer than their present one; return them."""
     to_sample = np.linalg.norm(points[ball] - points[at], axis=1)
     nearer = to_sample < distance[ball]

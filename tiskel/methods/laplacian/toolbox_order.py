@@ -14,12 +14,27 @@ the others are the same rings from another start.
 import numpy as np
 from scipy.spatial import Delaunay, QhullError
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import Lists, Points, Table
 from tiskel.geometry.rings import Rings
 
 
-def in_published_order(points: Points, neighbours: Indices, rings: Rings) -> Rings:
-    """Return the same rings, each starting and turning as in the toolbox; neighbours is (n, k), nearest first."""
+def in_published_order(points: Points, neighbours: Lists, rings: Rings) -> Rings:
+    """Return the same rings, each starting and turning as in the toolbox.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    neighbours : (n, k) int32
+        The nearest of every point, itself first.
+    rings : Rings
+        Of all points.
+
+    Returns
+    -------
+    Rings
+        Those that Qhull triangulates otherwise stay as they are.
+    """
     clouds = points[neighbours]
     axes = np.linalg.svd(clouds - clouds.mean(axis=1, keepdims=True), full_matrices=False)[2]
     flat = np.einsum("nkc,nac->nka", clouds, axes[:, :2])
@@ -31,7 +46,7 @@ def in_published_order(points: Points, neighbours: Indices, rings: Rings) -> Rin
     return Rings(members, rings.sizes, rings.closed)
 
 
-def _walk(flat: Points) -> list[int]:
+def _walk(flat: Table) -> list[int]:
     """Return the ranks of the ring members of point 0 in the order of the toolbox."""
     try:
         triangles = Delaunay(flat, qhull_options="Qt Qbb Qc").simplices

@@ -9,7 +9,7 @@ ball.
 
 import numpy as np
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Numbers, Points, Table
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
 
@@ -61,6 +61,6 @@ def _roundness(distance: Numbers, label: Indices, size: Numbers) -> Numbers:
     return np.asarray(np.clip((RAGGED - spread) / (RAGGED - ROUND), 0, 1))
 
 
-def _sums(values: Numbers, label: Indices, count: int) -> Numbers:
+def _sums(values: Table, label: Indices, count: int) -> Table:
     """Return (count, d) the sums of values (n, d) by label."""
     return np.asarray(np.stack([np.bincount(label, column, minlength=count) for column in values.T], axis=1))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers
+from tiskel.arrays import Edges, Numbers
 from tiskel.methods.robust.curve import ConeCurve, with_nodes
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
@@ -118,6 +118,6 @@ def _with_edges(curve: ConeCurve, pairs: list[tuple[int, int]]) -> ConeCurve:
         chain = np.array([a, *range(len(curve.nodes), len(curve.nodes) + between), b], np.int32)
         nodes = (1 - share) * curve.nodes[a] + share * curve.nodes[b]
         radii = ((1 - share) * curve.radii[a] + share * curve.radii[b])[:, 0]
-        links: Indices = np.stack([chain[:-1], chain[1:]], axis=1)
+        links: Edges = np.stack([chain[:-1], chain[1:]], axis=1)
         curve = with_nodes(curve, nodes, radii, links, np.full(between, curve.levels[a], np.int32), bridge=True)
     return curve

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points, resolved
+from tiskel.arrays import Edges, Indices, Mask, Numbers, Points, resolved
 from tiskel.geometry.graph import CurveGraph, tidy_edges
 
 
@@ -72,7 +72,7 @@ def contract_nodes(curve: ConeCurve, into: Indices, *, mean: bool = False) -> Co
     )  # fmt: skip
 
 
-def _bridged(renamed: Indices, curve: ConeCurve) -> Mask:
+def _bridged(renamed: Edges, curve: ConeCurve) -> Mask:
     """Return which edges are bridges under new names of their nodes: those that stand for nothing but bridges."""
     ordered = np.sort(renamed, axis=1)
     apart = ordered[:, 0] != ordered[:, 1]
@@ -89,7 +89,7 @@ def without_path(curve: ConeCurve, path: Indices) -> ConeCurve:
 
 
 def with_nodes(
-    curve: ConeCurve, nodes: Points, radii: Numbers, edges: Indices, levels: Indices, *, bridge: bool = False
+    curve: ConeCurve, nodes: Points, radii: Numbers, edges: Edges, levels: Indices, *, bridge: bool = False
 ) -> ConeCurve:
     """Add nodes, and edges that may name old nodes and, from len(curve.nodes), new ones.
 

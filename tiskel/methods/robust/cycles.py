@@ -8,7 +8,7 @@ inside. What is inside, the winding number tells, which closes holes.
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers
+from tiskel.arrays import Edges, Indices, Mask, Numbers, Table
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes
 from tiskel.methods.robust.network import Network
@@ -85,7 +85,7 @@ def _way(around: list[list[int]], a: int, b: int, without: int) -> list[int]:
     return way
 
 
-def _rungs(cycles: list[list[int]], curve: ConeCurve) -> tuple[Indices, Indices]:
+def _rungs(cycles: list[list[int]], curve: ConeCurve) -> tuple[Edges, Indices]:
     """Return pairs (r, 2) of nodes across the cycles, the larger section first, and the cycle of each."""
     size = curve.point_counts
     pairs, owner = [], []
@@ -101,7 +101,7 @@ def _rungs(cycles: list[list[int]], curve: ConeCurve) -> tuple[Indices, Indices]
 
 
 def _inside(
-    rungs: Indices, owner: Indices, cycles: list[list[int]], curve: ConeCurve, winding: Numbers, own: Numbers,
+    rungs: Edges, owner: Indices, cycles: list[list[int]], curve: ConeCurve, winding: Table, own: Numbers,
     spacing: float,
 ) -> Mask:  # fmt: skip
     """Tell which lines stay inside; towards a fragment only up to its half.
@@ -120,13 +120,13 @@ def _inside(
     return np.asarray(inside | small & (fragment | (winding.mean(axis=1) > level[owner])))
 
 
-def _overlapping(rungs: Indices, curve: ConeCurve) -> Mask:
+def _overlapping(rungs: Edges, curve: ConeCurve) -> Mask:
     """Tell which lines end within the ball at their other end."""
     length = np.linalg.norm(curve.nodes[rungs[:, 0]] - curve.nodes[rungs[:, 1]], axis=1)
     return np.asarray(length < curve.radii[rungs].max(axis=1))
 
 
-def _contraction(cycles: list[list[int]], filled: Mask, rungs: Indices, owner: Indices, levels: Indices) -> Indices:
+def _contraction(cycles: list[list[int]], filled: Mask, rungs: Edges, owner: Indices, levels: Indices) -> Indices:
     """Return for each node the one that takes its place: both sides of filled cycles that do not touch become one.
 
     Level by level; all at once only where the sides have no level in common.

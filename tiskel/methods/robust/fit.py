@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Indices, Lists, Numbers, Points, Stack, Table
 from tiskel.geometry.solve import BACKENDS
 from tiskel.methods.robust.curve import ConeCurve
 
@@ -103,7 +103,7 @@ def fit_cones(curve: ConeCurve, points: Points, section: Indices, *, rounds: int
     return foot_points(curve, points, rows, owner[rows], nearby)
 
 
-def nearby_edges(curve: ConeCurve) -> Indices:
+def nearby_edges(curve: ConeCurve) -> Lists:
     """Return (v, w) the edges within a few hops of each node, padded with -1."""
     count, edges = len(curve.nodes), curve.edges
     number = np.tile(np.arange(len(edges)), 2)
@@ -120,7 +120,7 @@ def nearby_edges(curve: ConeCurve) -> Indices:
 
 
 def foot_points(
-    curve: ConeCurve, points: Points, rows: Indices, lists: Indices, candidates: Indices, *,
+    curve: ConeCurve, points: Points, rows: Indices, lists: Indices, candidates: Lists, *,
     signed: bool = False, radial: bool = False,
 ) -> ConeFit:  # fmt: skip
     """Return the foot points of some points, each on the edge whose surface is nearest.
@@ -138,7 +138,7 @@ def foot_points(
     return ConeFit(curve, tables[0], edge, share, residual)
 
 
-def _step(fit: ConeFit, points: Points, start: Points, straightness: float) -> Numbers:
+def _step(fit: ConeFit, points: Points, start: Points, straightness: float) -> Table:
     """Return (v, 4) the Gauss-Newton step of nodes and radii."""
     count = len(fit.curve.nodes)
     heavy = len(fit.rows) / count
@@ -155,7 +155,7 @@ def _step(fit: ConeFit, points: Points, start: Points, straightness: float) -> N
     return BACKENDS["scipy"](matrix.tocsc())(right).reshape(count, 4)
 
 
-Term = tuple[Indices, Numbers, Numbers]  # unknowns (t, k), blocks (t, k, k) of the matrix, right-hand sides (t, k)
+Term = tuple[Lists, Stack, Table]  # unknowns (t, k), blocks (t, k, k) of the matrix, right-hand sides (t, k)
 
 
 def _data(fit: ConeFit, points: Points) -> Term:

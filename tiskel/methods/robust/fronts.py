@@ -12,9 +12,10 @@ the outside of bends.
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.csgraph import dijkstra
 
 from tiskel.arrays import Indices, Numbers, Points
+from tiskel.geometry.graph import component_labels
 from tiskel.geometry.rings import smallest_distances
 from tiskel.methods.robust.axes import on_axes
 from tiskel.methods.robust.network import Network
@@ -121,10 +122,8 @@ def cut(network: Network, distance: Numbers) -> Sections:
     """Return the connected pieces of each bin of distance (n,), numbered along the front."""
     reached = np.isfinite(distance)
     level = np.where(reached, np.floor(distance), -1).astype(np.int32)
-    first, second = network.edges[(level[network.edges[:, 0]] == level[network.edges[:, 1]])].T
-    count = len(level)
-    linked = sparse.coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
-    piece = connected_components(linked, directed=False)[1]
+    alike = level[network.edges[:, 0]] == level[network.edges[:, 1]]
+    piece = component_labels(len(level), network.edges[alike])
     _, least, number = np.unique(np.where(reached, piece, -1), return_index=True, return_inverse=True)
     order = np.lexsort((least, level[least]))  # what was not reached has level -1 and comes first
     rank = np.empty(len(order), np.int32)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Points, Table
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.rings import Rings
@@ -45,14 +45,14 @@ class Network:
         How long they are.
     """
 
-    axes: Numbers
+    axes: Table
     points: Points
     normals: Points
     areas: Numbers
     spacings: Numbers
-    neighbours: Indices
-    kept: Mask
-    edges: Indices
+    neighbours: Lists
+    kept: Masks
+    edges: Edges
     lengths: Numbers
 
     @cached_property
@@ -92,7 +92,7 @@ class Network:
         return OrientedCloud(self.points, self.normals * np.where(outward < 0, -1.0, 1.0)[:, None], self.areas)
 
 
-def own_axes(points: Points) -> Numbers:
+def own_axes(points: Points) -> Table:
     """Return (3, 3) the cloud's principal axes as rows, each towards its longer tail.
 
     Winding numbers are summed over blocks of a grid, so they depend a little on
@@ -109,7 +109,7 @@ def prepared(points: Points, k: int) -> Network:
     return neighbour_network(np.ascontiguousarray(points @ axes.T), k, axes)
 
 
-def neighbour_network(points: Points, k: int, axes: Numbers | None = None) -> Network:
+def neighbour_network(points: Points, k: int, axes: Table | None = None) -> Network:
     """Return the network of a cloud (n, 3) that lies in its axes, from its k nearest neighbours.
 
     Left out are steps that run along the normals at both ends, which would join
@@ -131,7 +131,7 @@ def neighbour_network(points: Points, k: int, axes: Numbers | None = None) -> Ne
     return Network(own, points, normals, areas, spacings, neighbours, kept, edges, edge_lengths)
 
 
-def _edges(neighbours: Indices, kept: Mask, lengths: Numbers) -> tuple[Indices, Numbers]:
+def _edges(neighbours: Lists, kept: Masks, lengths: Table) -> tuple[Edges, Numbers]:
     count = len(neighbours)
     first, second = np.repeat(np.arange(count), kept.sum(axis=1)), neighbours[kept]
     keys, once = np.unique(np.minimum(first, second) * np.int64(count) + np.maximum(first, second), return_index=True)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tiskel.arrays import Indices
+from tiskel.arrays import Edges, Indices
 from tiskel.geometry.graph import node_radii, tidy_edges
 from tiskel.methods.robust.axes import line_centres
 from tiskel.methods.robust.curve import ConeCurve
@@ -38,7 +38,7 @@ def centred(curve: ConeCurve, network: Network, sections: Sections) -> ConeCurve
     return replace(curve, nodes=nodes, radii=node_radii(nodes, network.points[rows], label))
 
 
-def _links(pairs: Indices, levels: Indices) -> Indices:
+def _links(pairs: Edges, levels: Indices) -> Edges:
     """Return the edges between sections.
 
     Neighbours further than one level apart, as at gaps, only count where
