@@ -17,7 +17,6 @@ from tiskel.methods.trace import Sections
 
 AROUND = 1.4  # radii about an end in which its cap is looked for
 AHEAD = 0.6  # radii ahead of the end, from where on points belong to the cap
-CAP = 2 * np.pi * (1 - AHEAD)  # area of a ball's cap from there on, in squared radii
 OPEN = 0.6  # an end with a smaller share of that area is open
 FACING = 0.5  # cosine between the direction of an end and the way over the gap
 FACING_SIDE = 0.7  # the same towards the side of another branch
@@ -69,13 +68,14 @@ def open_ends(curve: ConeCurve, network: Network, sections: Sections) -> list[Op
     paths = curve.paths_from(ends=True)
     rows = np.flatnonzero(curve.node_of_section[sections.section] >= 0)
     tree, found = cKDTree(network.points[rows]), []
+    whole = 2 * np.pi * (1 - AHEAD)  # area of a ball's cap, in squared radii
     for path in paths:
         end, radius = int(path[0]), float(curve.radii[path[0]])
         direction = curve.heading(path)
         direction /= max(float(np.linalg.norm(direction)), np.finfo(float).tiny)
         near = rows[np.sort(np.array(tree.query_ball_point(curve.nodes[end], AROUND * radius), int))]
         cap = near[(network.points[near] - curve.nodes[end]) @ direction > AHEAD * radius]
-        if network.areas[cap].sum() < OPEN * CAP * radius**2:
+        if network.areas[cap].sum() < OPEN * whole * radius**2:
             found.append(OpenEnd(end, direction, frozenset(path.tolist())))
     return found
 
