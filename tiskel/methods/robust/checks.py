@@ -14,7 +14,7 @@ from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
 
 # The table of levels. Found by trial on the shapes of the gallery, clean and degraded, and on seven scans. In brackets:
-# how many of the 14 curves (c) or warnings (w) of benchmarks/sensitivity.md change with 0.7 and 1.4 times the value.
+# how many of the 14 curves, or of their warnings, of benchmarks/sensitivity.md change with 0.7 and 1.4 times the value.
 PLACES = 200  # on the curve, where winding numbers are asked for [1, 0]
 OUTSIDE_SCORE = 0.4  # winding number below which a place counts against a curve [1, 0]
 OUTSIDE_WARNING = 0.25  # winding number below which a place is worth a warning [warnings 0, 1]
