@@ -13,20 +13,27 @@ from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
 
-BARELY = 1.0  # a branch that reaches no further from its junction, in the junction's radius, is a spur
-CONTAINED = 1.15  # of a node's radius: balls within so much are part of its ball
-STICKS_OUT_SPACINGS = 1.5  # what a branch sticks out of the rest at least
-FARTHEST = 0.98  # quantile of its points that says how far
-HANGING = 1.3  # radii of a junction about the branch's end in which the junction's points count for the branch
-TIP_SHARE, TIP_LEAST = 0.05, 3  # the farthest points ahead of an end
-AHEAD = 0.5  # cosine to the direction of the end
-GROWS, GROWS_SPACINGS, GROWS_DEVIATIONS = 0.2, 1.0, 3.0  # the end does not reach the tip: in radii, and at least
-TAPER = 0.5, 0.9  # radius of a new tip in that of the end: the first guess, and at most
-OFF, OFF_SPACINGS, OFF_DEVIATIONS = 0.25, 1.5, 4.0  # points further off the curve: in local radii, and at least
-MISSED = 0.5  # local radii that a missed branch sticks out
-RIDGE = 1.5  # local radii along the curve: what is longer is the rim of a flat part, and no branch
-FEWEST = 12  # points of a missed branch
-TINY = np.finfo(float).tiny  # stands in for the radius of a node whose points lie on it
+# Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
+# change with 0.7 and with 1.4 times the value.
+BARELY = 1.0  # radii of its junction that a branch reaches from there at least, or it is a spur [0, 2]
+CONTAINED = 1.15  # radii of a node: balls within so much are part of its ball [0, 10]
+STICKS_OUT_SPACINGS = 1.5  # spacings that a branch sticks out of the rest at least [1, 0]
+FARTHEST = 0.98  # quantile of the distances of a branch's points that says how far it sticks out [2, 1]
+HANGING = 1.3  # radii of a branch's end in which points of the junction are the branch's [0, 0; decides on noisy mugs]
+TIP_SHARE = 0.05  # share of the points ahead of an end, the farthest, whose mean is its tip [1, 2]
+TIP_LEAST = 3  # points that are such a share at least; fewer have no tip [1, 1]
+AHEAD = 0.5  # cosine to the direction of the end from which on points are ahead of it [2, 1]
+GROWS = 0.2  # radii of an end that its tip lies outside its ball at least, for the end to grow [0, 2]
+GROWS_SPACINGS = 1.0  # the same in spacings [0, 0; decides where patches are missing]
+GROWS_DEVIATIONS = 3.0  # the same in standard deviations of the fit, which the noise of the scan is part of [1, 0]
+TIP_RADIUS = 0.5  # radii of an end: the radius that a new tip starts with, and half a spacing at least [2, 2]
+OFF = 0.25  # local radii off the curve's surface: points beyond may be a missed branch [0, 0; for uneven density]
+OFF_SPACINGS = 1.5  # the same in spacings [1, 0]
+OFF_DEVIATIONS = 4.0  # the same in standard deviations of the fit [0, 0; for dense clouds with noise]
+MISSED = 0.5  # local radii that a missed branch sticks out at least [2, 0]
+RIDGE = 1.5  # local radii along the curve: longer is the rim of a flat part, no branch [0, 0; for uneven density]
+FEWEST = 12  # points of a missed branch [1, 0]
+TINY = np.finfo(float).tiny  # stands in for the radius, else a divisor of 0, of a junction whose points all lie on it
 
 
 def without_spurs(curve: ConeCurve, points: Points, sections: Sections) -> ConeCurve:
@@ -109,7 +116,7 @@ def with_tips(fit: ConeFit, network: Network, sections: Sections) -> ConeCurve |
         tip = _tip(points[mine] - curve.nodes[end], curve.heading(path))
         reach, radius = float(np.linalg.norm(tip)), float(curve.radii[end])
         if reach - radius > max(GROWS * radius, least):
-            new = min(max(TAPER[0] * radius, 0.5 * network.spacing), TAPER[1] * radius)
+            new = max(TIP_RADIUS * radius, 0.5 * network.spacing)
             tips.append((end, curve.nodes[end] + tip * (1 - new / reach), new))
     if not tips:
         return None

@@ -15,14 +15,14 @@ from tiskel.methods.robust.curve import ConeCurve, with_nodes
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
 
-AROUND = 1.4  # radii about an end in which its cap is looked for
-AHEAD = 0.6  # radii ahead of the end, from where on points belong to the cap
-CAP = 2 * np.pi * (1 - AHEAD)  # area of a ball's cap from there on, in squared radii
-OPEN = 0.6  # an end with a smaller share of that area is open
-FACING = 0.5  # cosine between the direction of an end and the way over the gap
-FACING_SIDE = 0.7  # the same towards the side of another branch
-SIDE = 0.75  # of the widest gap between two ends: the widest to the side of another branch, in the end's own radius
-ALIKE = 2.0  # largest ratio of two radii
+# Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
+# change with 0.7 and with 1.4 times the value.
+AROUND = 1.4  # radii about an end in which its cap is looked for [0, 1]
+AHEAD = 0.6  # radii ahead of the end, from where on points belong to the cap [0, 0; OPEN counts from there]
+OPEN = 0.6  # share of a ball's cap, by area: an end with less is open [0, 0; decides where patches are missing]
+FACING = 0.5  # cosine between the direction of an end and the way to another, at least [0, 0; without it tunnels close]
+FACING_SIDE = 0.7  # the same towards the side of another branch [1, 1]
+SIDE = 0.75  # share of the widest gap between two ends that a gap to a side may be wide, in the end's own radius [1, 0]
 
 
 @dataclass(frozen=True)
@@ -69,13 +69,14 @@ def open_ends(curve: ConeCurve, network: Network, sections: Sections) -> list[Op
     paths = curve.paths_from(ends=True)
     rows = np.flatnonzero(curve.node_of_section[sections.section] >= 0)
     tree, found = cKDTree(network.points[rows]), []
+    whole = 2 * np.pi * (1 - AHEAD)  # area of a ball's cap, in squared radii
     for path in paths:
         end, radius = int(path[0]), float(curve.radii[path[0]])
         direction = curve.heading(path)
         direction /= max(float(np.linalg.norm(direction)), np.finfo(float).tiny)
         near = rows[np.sort(np.array(tree.query_ball_point(curve.nodes[end], AROUND * radius), int))]
         cap = near[(network.points[near] - curve.nodes[end]) @ direction > AHEAD * radius]
-        if network.areas[cap].sum() < OPEN * CAP * radius**2:
+        if network.areas[cap].sum() < OPEN * whole * radius**2:
             found.append(OpenEnd(end, direction, frozenset(path.tolist())))
     return found
 
@@ -88,7 +89,7 @@ def _facing_pairs(curve: ConeCurve, ends: list[OpenEnd], widest: float) -> list[
             gap = curve.nodes[other.node] - curve.nodes[one.node]
             width, radii = float(np.linalg.norm(gap)), curve.radii[[one.node, other.node]]
             facing = float(one.direction @ gap), -float(other.direction @ gap)
-            near = 0 < width < widest * radii.sum() and radii.max() < ALIKE * radii.min()
+            near = 0 < width < widest * radii.sum()
             if near and min(facing) > FACING * width:
                 found.append((width * 3 - sum(facing), one.node, other.node))
     pairs: list[tuple[int, int]] = []

@@ -8,12 +8,14 @@ from tiskel.arrays import Indices, Numbers, Points
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes, keeps_loops
 
-CLEARED = 1.0  # radii about a junction in which nodes say nothing of their branches
-HOLD = 0.2  # weight of where a junction is, against the lines of its branches
-FARTHEST = 1.5  # radii that a junction moves at most
-TRIES = 5  # places on the way back from where the lines meet
-INSIDE = 0.4  # winding number that a place for a junction has at least
-TINY = np.finfo(float).tiny  # stands in for the radius of a node whose points lie on it
+# Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
+# change with 0.7 and with 1.4 times the value.
+CLEARED = 1.0  # radii about a junction in which nodes say nothing of their branches [10, 11]
+HOLD = 0.2  # weight of where a junction is, against the lines of its branches [12, 12]
+FARTHEST = 1.5  # radii that a junction moves at most [5, 3]
+TRIES = 5  # places on the way back from where the lines meet, both ends included [2, 2]
+INSIDE = 0.4  # winding number that a place for a junction has at least [1, 1]
+TINY = np.finfo(float).tiny  # stands in for the radius, else a divisor of 0, of junctions whose points all lie on them
 
 
 def merged_junctions(curve: ConeCurve, nearest: float) -> ConeCurve:

@@ -13,10 +13,12 @@ from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.rings import Rings
 from tiskel.geometry.spacing import spacings_from
 
-NORMAL_NEIGHBOURS = 12  # the point included; the plane through them
-AREA_NEIGHBOURS = 8  # in a disc about the point
-FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour
-ALONG_NORMALS = 0.75  # cosine: such a step leaves the surface at both of its ends
+# Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
+# change with 0.7 and with 1.4 times the value.
+NORMAL_NEIGHBOURS = 12  # points, itself included, whose plane gives a point's normal [14, 14]
+AREA_NEIGHBOURS = 8  # points in the disc about a point that gives its area [1, 0]
+FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour [10, 4]
+ALONG_NORMALS = 0.75  # cosine to both normals: such a step leaves the surface at both of its ends [13, 11]
 
 
 @dataclass(frozen=True)
