@@ -1,6 +1,7 @@
 """The types of arrays, and checks of arrays at the door of the library."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,7 @@ Floats = npt.NDArray[np.float64]  #: any number of axes, as the docstring says
 Indices = np.ndarray[tuple[int], np.dtype[np.int32]]  #: shape (n,): rows of something
 Edges = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (e, 2), or (e, 3) for triangles
 Lists = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (n, k): a row of rows for each of n
+Pairs = np.ndarray[tuple[int, int], np.dtype[np.integer[Any]]]  #: shape (l, 2) or (l, k), integers of any width
 Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]  #: shape (n,)
 Masks = np.ndarray[tuple[int, int], np.dtype[np.bool_]]  #: shape (n, k)
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Points
+from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Pairs, Points
 
 
 class RadiusSource(IntEnum):
@@ -203,14 +203,14 @@ def edge_lengths(nodes: Points, edges: Edges) -> Numbers:
     return np.asarray(np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1))
 
 
-def component_labels(count: int, links: Edges) -> Indices:
+def component_labels(count: int, links: Pairs) -> Indices:
     """Return which connected set each thing is in.
 
     Parameters
     ----------
     count : int
         How many things there are; they are numbered from 0.
-    links : (l, 2) int32
+    links : (l, 2) int
         Pairs of them that hang together, in either order, repeats allowed.
 
     Returns
@@ -231,7 +231,7 @@ def component_labels(count: int, links: Edges) -> Indices:
     return np.asarray(connected_components(graph, directed=False)[1], np.int32)
 
 
-def connected_sets(count: int, links: Edges) -> list[Indices]:
+def connected_sets(count: int, links: Pairs) -> list[Indices]:
     """Return the connected sets of things 0 to count - 1 that links (l, 2) join, each ascending, (k,) int32."""
     label = component_labels(count, links)
     return [np.flatnonzero(label == number).astype(np.int32) for number in range(int(label.max(initial=-1)) + 1)]

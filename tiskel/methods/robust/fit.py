@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from tiskel.arrays import Indices, Lists, Numbers, Points, Stack, Table
+from tiskel.arrays import Indices, Lists, Numbers, Pairs, Points, Stack, Table
 from tiskel.geometry.solve import BACKENDS
 from tiskel.methods.robust.curve import ConeCurve
 
@@ -161,7 +161,7 @@ def _step(fit: ConeFit, points: Points, start: Points, straightness: float) -> T
     return BACKENDS["scipy"](matrix.tocsc())(right).reshape(count, 4)
 
 
-Term = tuple[Lists, Stack, Table]  # unknowns (t, k), blocks (t, k, k) of the matrix, right-hand sides (t, k)
+Term = tuple[Pairs, Stack, Table]  # unknowns (t, k), blocks (t, k, k) of the matrix, right-hand sides (t, k)
 
 
 def _data(fit: ConeFit, points: Points) -> Term:
@@ -191,7 +191,7 @@ def _smoothness(curve: ConeCurve, heavy: float, straightness: float) -> list[Ter
     whole = np.maximum(before + after, np.finfo(float).tiny)
     bend = np.stack([after / whole, -np.ones(len(triples)), before / whole], axis=1)
     blocks = bend[:, :, None] * bend[:, None, :]
-    terms = []
+    terms: list[Term] = []
     for axis, weight in enumerate([straightness] * 3 + [EVEN]):
         off = (bend * values[triples, axis]).sum(axis=1)
         terms.append((4 * triples + axis, weight * heavy * blocks, -weight * heavy * bend * off[:, None]))
