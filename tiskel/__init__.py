@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tiskel.gallery.make import make_shape as make_shape
     from tiskel.gallery.make import shape_graph as shape_graph
     from tiskel.geometry.graph import CurveGraph as CurveGraph
-    from tiskel.geometry.graph import RadiusSource as RadiusSource
+    from tiskel.geometry.radius import RadiusSource as RadiusSource
     from tiskel.io.clouds import Cloud as Cloud
     from tiskel.io.clouds import load_cloud as load_cloud
     from tiskel.io.curves import Curve as Curve
@@ -80,7 +80,7 @@ _HOME = {
     "PipelineParams": "params",
     "PipelineResult": "pipeline",
     "Quality": "metrics.result",
-    "RadiusSource": "geometry.graph",
+    "RadiusSource": "geometry.radius",
     "RobustParams": "params",
     "RollParams": "params",
     "RollStatus": "rolling.trajectory",

@@ -26,7 +26,8 @@ from tiskel.arrays import Edges, Points, diagonal, normalisation
 from tiskel.gallery.catalogue import SHAPES
 from tiskel.gallery.random_graphs import random_graph
 from tiskel.geometry.curve import curve_samples
-from tiskel.geometry.graph import RadiusSource, tidy_edges
+from tiskel.geometry.graph import tidy_edges
+from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.round_cones import union_distance
 from tiskel.geometry.solid import solid_of
 from tiskel.methods.robust.checks import Candidate, warnings_of

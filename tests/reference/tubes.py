@@ -3,7 +3,7 @@
 import numpy as np
 
 from tiskel.arrays import Points, Table
-from tiskel.geometry.bspline import fit_strip
+from tiskel.geometry.bspline import fit_bspline
 from tiskel.surfaces.tube import V_STOP, Tube
 
 
@@ -12,7 +12,7 @@ def tube(curve: Points, series: Table, m: tuple[float, float, float] = (0, 0, 1)
     v = np.linspace(0, V_STOP, len(curve))
     field = np.tile(np.asarray(m, float), (len(v), 1))
     axis, fixed, radii = (
-        fit_strip(v, values, np.ones(len(v)), intervals, V_STOP, penalty=1e-12) for values in (curve, field, series)
+        fit_bspline(v, values, np.ones(len(v)), intervals, V_STOP, penalty=1e-12) for values in (curve, field, series)
     )
     return Tube(axis, fixed, radii)
 

@@ -21,7 +21,7 @@ from tiskel import (
     write_surfaces,
 )
 from tiskel.arrays import Numbers, Points, Table
-from tiskel.geometry.bspline import fit_strip
+from tiskel.geometry.bspline import fit_bspline
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.round_cones import union_distance
 from tiskel.io.mesh_file import dump_mesh
@@ -265,7 +265,7 @@ def test_the_published_rule_ends_at_order_eight_where_there_is_noise() -> None:
 
 def test_slices_measure_area_perimeter_and_axes() -> None:
     v = np.linspace(0, V_STOP, 20)
-    strip = fit_strip(v, np.tile([2.0, 0, 0], (20, 1)), np.ones(20), 4, V_STOP)
+    strip = fit_bspline(v, np.tile([2.0, 0, 0], (20, 1)), np.ones(20), 4, V_STOP)
     area, perimeter, longer, shorter = measures(strip, 1.0)
     assert area == pytest.approx(4 * np.pi, rel=1e-9)
     assert perimeter == pytest.approx(4 * np.pi, rel=1e-9)

@@ -8,7 +8,7 @@ import pytest
 
 from reference.tubes import bent_tube
 from tiskel.arrays import Numbers, Points
-from tiskel.geometry.bspline import fit_strip
+from tiskel.geometry.bspline import fit_bspline
 from tiskel.slicing.axis import fit_axis, sharpest
 from tiskel.slicing.field import fit_field
 from tiskel.surfaces.analytic import Cone, Ellipsoid, EllipticCylinder, Plane, Torus
@@ -66,7 +66,7 @@ def test_the_normal_points_outward(name: str) -> None:
 
 def test_a_strip_follows_a_smooth_curve_to_its_third_derivative() -> None:
     v = np.linspace(0, V_STOP, 200)
-    strip = fit_strip(v, np.sin(2 * v)[:, None], np.ones(200), 40, V_STOP, penalty=1e-12)
+    strip = fit_bspline(v, np.sin(2 * v)[:, None], np.ones(200), 40, V_STOP, penalty=1e-12)
     at = strip.at(1.1)[:, 0]
     # Quintic splines of step 0.08: the error of the k-th derivative is of the order 0.08^(6 - k) * 64.
     np.testing.assert_allclose(at, [np.sin(2.2), 2 * np.cos(2.2), -4 * np.sin(2.2), -8 * np.cos(2.2)], atol=2e-2)
@@ -77,14 +77,14 @@ def test_a_strip_takes_values_at_its_very_end() -> None:
     """The last knot is intervals times the step, which may be a rounding below the end."""
     for intervals in range(4, 120):
         v = np.linspace(0, V_STOP, 2 * intervals)
-        strip = fit_strip(v, v[:, None], np.ones(len(v)), intervals, V_STOP)
+        strip = fit_bspline(v, v[:, None], np.ones(len(v)), intervals, V_STOP)
         assert strip.at(V_STOP)[0, 0] == pytest.approx(V_STOP)
 
 
 def test_cross_validation_smooths_noise_and_keeps_a_signal() -> None:
     v = np.linspace(0, V_STOP, 100)
     noisy = np.sin(3 * v) + np.random.default_rng(0).normal(size=100) * 0.05
-    strip = fit_strip(v, noisy[:, None], np.ones(100), 50, V_STOP)
+    strip = fit_bspline(v, noisy[:, None], np.ones(100), 50, V_STOP)
     off = strip.along(v)[:, 0, 0] - np.sin(3 * v)
     assert np.sqrt((off**2).mean()) < 0.03  # ten or so free coefficients of a hundred leave a third of the noise
 
@@ -92,7 +92,7 @@ def test_cross_validation_smooths_noise_and_keeps_a_signal() -> None:
 @pytest.mark.parametrize("order", [0, 1, 2, 3])
 def test_a_closed_strip_closes_with_three_derivatives(order: int) -> None:
     v = np.linspace(0, V_STOP, 60, endpoint=False)
-    strip = fit_strip(v, np.stack([np.cos(2 * v), np.sin(2 * v)], axis=1), np.ones(60), 20, V_STOP, periodic=True)
+    strip = fit_bspline(v, np.stack([np.cos(2 * v), np.sin(2 * v)], axis=1), np.ones(60), 20, V_STOP, periodic=True)
     before, after = strip.at(V_STOP - 1e-9)[order], strip.at(1e-9)[order]
     np.testing.assert_allclose(before, after, atol=1e-5)
 

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.gallery.catalogue import SHAPES
-from tiskel.geometry.graph import RadiusSource
+from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.round_cones import ConeGraph, sample_union
 from tiskel.params import ShapeParams
 from tiskel.skeleton import Skeleton

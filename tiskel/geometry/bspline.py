@@ -23,7 +23,7 @@ DERIVATIVES = 4  # the value and three of them
 
 
 @dataclass(frozen=True)
-class Strip:
+class BSplineCurve:
     """A spline on even intervals.
 
     Attributes
@@ -73,12 +73,12 @@ class Strip:
         return np.asarray(powers @ self.pieces[piece])
 
 
-def joined(strips: "list[Strip]") -> Strip:
-    """Return strips on the same intervals as one with all their columns."""
-    return Strip(np.concatenate([s.coefficients for s in strips], axis=1), strips[0].stop, strips[0].periodic)
+def joined(splines: "list[BSplineCurve]") -> BSplineCurve:
+    """Return splines on the same intervals as one with all their columns."""
+    return BSplineCurve(np.concatenate([s.coefficients for s in splines], axis=1), splines[0].stop, splines[0].periodic)
 
 
-def fit_strip(
+def fit_bspline(
     v: Numbers,
     values: Table,
     weights: Numbers,
@@ -87,7 +87,7 @@ def fit_strip(
     *,
     periodic: bool = False,
     penalty: float | None = None,
-) -> Strip:
+) -> BSplineCurve:
     """Return the strip nearest to values at places, all columns alike smooth.
 
     Parameters
@@ -109,7 +109,7 @@ def fit_strip(
 
     Returns
     -------
-    Strip
+    BSplineCurve
     """
     intervals = max(intervals, DEGREE) if periodic else max(intervals, 1)
     wrap = np.arange(intervals + DEGREE) % (intervals if periodic else intervals + DEGREE)
@@ -129,7 +129,7 @@ def fit_strip(
 
     if penalty is None:
         penalty = float(min(WEIGHTS, key=lambda weight: solve(float(weight))[1]))
-    return Strip(solve(penalty)[0][wrap], stop, periodic)
+    return BSplineCurve(solve(penalty)[0][wrap], stop, periodic)
 
 
 def _knots(intervals: int, stop: float) -> Numbers:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
@@ -11,22 +10,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Pairs, Points
-
-
-class RadiusSource(IntEnum):
-    """What the radius of a node is worth; the numbers stand in files.
-
-    Examples
-    --------
-    >>> from tiskel import RadiusSource
-    >>> RadiusSource.MODELLED.name
-    'MODELLED'
-    """
-
-    UNKNOWN = 0  #: nobody said
-    MEASURED = 1  #: points about the node determine it
-    BOUNDED = 2  #: the body is thinner than its points can tell: it is at most about so much
-    MODELLED = 3  #: no points, as on a bridge over a gap: taken from the nodes beside it
+from tiskel.geometry.radius import RadiusSource
 
 
 @dataclass(frozen=True, eq=False)

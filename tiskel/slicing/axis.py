@@ -3,7 +3,7 @@
 import numpy as np
 
 from tiskel.arrays import TINY, Numbers, Points
-from tiskel.geometry.bspline import WEIGHTS, Strip, fit_strip
+from tiskel.geometry.bspline import WEIGHTS, BSplineCurve, fit_bspline
 from tiskel.geometry.frames import step_lengths
 from tiskel.surfaces.tube import V_STOP
 
@@ -17,7 +17,7 @@ ROUNDS = 3  # of evening out the speed
 
 def fit_axis(
     places: Points, weights: Numbers, radius: float, intervals: int, *, closed: bool, v: Numbers | None = None
-) -> Strip:
+) -> BSplineCurve:
     """Return the curve nearest to places in order, as smooth as cross-validation finds it has to be.
 
     Smoother where its bends are sharper than the body is thick, as far as it
@@ -41,7 +41,7 @@ def fit_axis(
 
     Returns
     -------
-    Strip
+    BSplineCurve
         The curve p(v), v from 0 to pi.
     """
     if v is None:
@@ -49,7 +49,7 @@ def fit_axis(
         if closed:
             places, weights, v = places[:-1], weights[:-1], v[:-1]
     for penalty in (None, *(float(weight) for weight in WEIGHTS if weight >= LEAST_PENALTY)):
-        rough = fit_strip(v, places, weights, intervals, V_STOP, periodic=closed, penalty=penalty)
+        rough = fit_bspline(v, places, weights, intervals, V_STOP, periodic=closed, penalty=penalty)
         if penalty is not None and np.linalg.norm(rough.along(v)[:, 0] - places, axis=1).max() > ASTRAY * radius:
             break  # smoother only by leaving the body
         axis = evened(rough, intervals)
@@ -64,19 +64,19 @@ def arc_share(places: Points) -> Numbers:
     return np.asarray(along / max(along[-1], TINY))
 
 
-def sharpest(axis: Strip) -> float:
+def sharpest(axis: BSplineCurve) -> float:
     """Return the largest curvature of a curve, in 1 / length."""
     rows = axis.along(np.linspace(0, V_STOP, DENSE * axis.intervals))
     speed = np.linalg.norm(rows[:, 1], axis=1)
     return float((np.linalg.norm(np.cross(rows[:, 1], rows[:, 2]), axis=1) / speed**3).max())
 
 
-def evened(axis: Strip, intervals: int, start: float = 0.0, stop: float = V_STOP) -> Strip:
+def evened(axis: BSplineCurve, intervals: int, start: float = 0.0, stop: float = V_STOP) -> BSplineCurve:
     """Return a curve, or a part of it, with v in proportion to its length.
 
     Parameters
     ----------
-    axis : Strip
+    axis : BSplineCurve
         The curve.
     intervals : int
         Of the result.
@@ -87,7 +87,7 @@ def evened(axis: Strip, intervals: int, start: float = 0.0, stop: float = V_STOP
 
     Returns
     -------
-    Strip
+    BSplineCurve
         The same places, v from 0 to pi.
     """
     for _ in range(ROUNDS):
@@ -97,7 +97,7 @@ def evened(axis: Strip, intervals: int, start: float = 0.0, stop: float = V_STOP
             places[-1] = places[0]
         at = arc_share(places) * V_STOP
         keep = slice(None, -1) if axis.periodic else slice(None)
-        axis = fit_strip(
+        axis = fit_bspline(
             at[keep], places[keep], np.ones(len(at[keep])), intervals, V_STOP, periodic=axis.periodic, penalty=EXACT
         )
         start, stop = 0.0, V_STOP

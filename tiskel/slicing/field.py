@@ -7,7 +7,7 @@ frames. ACM TOG 27(1), 2008.
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
-from tiskel.geometry.bspline import Strip, fit_strip
+from tiskel.geometry.bspline import BSplineCurve, fit_bspline
 from tiskel.geometry.frames import across, unit
 from tiskel.slicing.axis import EXACT
 from tiskel.surfaces.tube import V_STOP
@@ -18,8 +18,8 @@ DENSE = 16  # places per interval
 
 
 def fit_field(
-    axis: Strip, m: tuple[float, float, float] | str, radius: float, intervals: int
-) -> tuple[Strip, str, str]:
+    axis: BSplineCurve, m: tuple[float, float, float] | str, radius: float, intervals: int
+) -> tuple[BSplineCurve, str, str]:
     """Return the field along a curve, the name of the frame it gives, and why it is not the one asked for.
 
     A direction that comes near the tangent, and normals of what is straight
@@ -27,7 +27,7 @@ def fit_field(
 
     Parameters
     ----------
-    axis : Strip
+    axis : BSplineCurve
         The skeleton curve.
     m : (float, float, float) or str
         A direction, "normal" or "rotation-minimising".
@@ -38,7 +38,7 @@ def fit_field(
 
     Returns
     -------
-    field : Strip
+    field : BSplineCurve
         m(v).
     frame : str
         "m", "normal" or "rotation-minimising".
@@ -93,5 +93,5 @@ def _reflected(vector: Numbers, tangent: Numbers, step: Numbers, tangent_after: 
     return mirrored(mirrored(vector, step), tangent_after - mirrored(tangent, step))
 
 
-def _strip(axis: Strip, v: Numbers, values: Points, intervals: int) -> Strip:
-    return fit_strip(v, values, np.ones(len(v)), intervals, V_STOP, periodic=axis.periodic, penalty=EXACT)
+def _strip(axis: BSplineCurve, v: Numbers, values: Points, intervals: int) -> BSplineCurve:
+    return fit_bspline(v, values, np.ones(len(v)), intervals, V_STOP, periodic=axis.periodic, penalty=EXACT)

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
 from tiskel.errors import TiskelError
-from tiskel.geometry.bspline import Strip
+from tiskel.geometry.bspline import BSplineCurve
 from tiskel.geometry.frames import step_lengths
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.spacing import spacing_of
@@ -105,10 +105,10 @@ class _Cutter:
     radius: float
     params: SurfaceParams
 
-    def field(self, axis: Strip) -> tuple[Strip, str, str]:
+    def field(self, axis: BSplineCurve) -> tuple[BSplineCurve, str, str]:
         return fit_field(axis, self.params.m, self.radius, axis.intervals)
 
-    def rings(self, axis: Strip, field: Strip, places: Numbers) -> list[Ring]:
+    def rings(self, axis: BSplineCurve, field: BSplineCurve, places: Numbers) -> list[Ring]:
         """Return the ring of every slice."""
         reach = np.full(len(places), np.inf)
         if not self.owned:
@@ -192,7 +192,7 @@ def _dense(polyline: Points, step: float) -> Points:
     return np.concatenate(parts)
 
 
-def _recentred(axis: Strip, cutter: _Cutter, count: int) -> tuple[Strip, _Cutter]:
+def _recentred(axis: BSplineCurve, cutter: _Cutter, count: int) -> tuple[BSplineCurve, _Cutter]:
     """Return the curve through the middles of the sections, and the cutter with their median radius."""
     field, places = cutter.field(axis)[0], places_of(count)
     loose = replace(cutter.params, uneven=np.inf)

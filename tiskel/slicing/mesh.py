@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import TINY, Edges, Numbers, Points, Stack
-from tiskel.geometry.bspline import Strip
+from tiskel.geometry.bspline import BSplineCurve
 from tiskel.geometry.ellipse import fit_ellipse
 from tiskel.slicing.fitted import FittedSurface
 from tiskel.slicing.sections import Section
@@ -122,12 +122,12 @@ def _row(branch: str, number: int, tube: Tube, section: Section) -> dict[str, ob
     }  # fmt: skip
 
 
-def measures(series: Strip, v: float) -> tuple[float, float, float | None, float | None]:
+def measures(series: BSplineCurve, v: float) -> tuple[float, float, float | None, float | None]:
     """Return what the section of a surface at one place measures, in the input's unit.
 
     Parameters
     ----------
-    series : Strip
+    series : BSplineCurve
         The Fourier coefficients of the surface along v.
     v : float
         The place, from 0 to pi.

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Numbers, Points, Table
-from tiskel.geometry.bspline import Strip
+from tiskel.geometry.bspline import BSplineCurve
 from tiskel.geometry.graph import component_labels
 from tiskel.surfaces.tube import Moving, moving_frame
 
@@ -37,14 +37,14 @@ class Ring:
     r: Numbers
 
 
-def frames_along(axis: Strip, field: Strip, v: Numbers) -> Moving:
+def frames_along(axis: BSplineCurve, field: BSplineCurve, v: Numbers) -> Moving:
     """Return the moving frame of an axis and its field at places v (k,); its vectors are tuples of arrays (k,)."""
     p, m = (list(map(tuple, np.moveaxis(strip.along(v), 0, 2))) for strip in (axis, field))
     return moving_frame(p, m)
 
 
 def cut(
-    points: Points, axis: Strip, field: Strip, v: Numbers, half: float, reach: Numbers, link: float
+    points: Points, axis: BSplineCurve, field: BSplineCurve, v: Numbers, half: float, reach: Numbers, link: float
 ) -> list[Indices]:  # fmt: skip
     """Return the ring of points around the curve in each slice.
 
@@ -52,9 +52,9 @@ def cut(
     ----------
     points : (n, 3) float64
         The points, in the input's unit.
-    axis : Strip
+    axis : BSplineCurve
         The skeleton curve.
-    field : Strip
+    field : BSplineCurve
         The field m(v) of its frame.
     v : (s,) float64
         The places of the slices, from 0 to pi.
@@ -124,7 +124,7 @@ def ring_of(plane: Table, link: float) -> Indices:
     return np.flatnonzero(np.isin(part, ring)).astype(np.int32)
 
 
-def around(points: Points, rows: Indices, axis: Strip, field: Strip, start: Numbers) -> Ring:
+def around(points: Points, rows: Indices, axis: BSplineCurve, field: BSplineCurve, start: Numbers) -> Ring:
     """Return where some points are about the curve: in the planes across it that go through them.
 
     Parameters
@@ -133,9 +133,9 @@ def around(points: Points, rows: Indices, axis: Strip, field: Strip, start: Numb
         The points, in the input's unit.
     rows : (k,) int32
         The rows of those that are asked for.
-    axis : Strip
+    axis : BSplineCurve
         The skeleton curve.
-    field : Strip
+    field : BSplineCurve
         The field m(v) of its frame.
     start : (k,) float64
         A v near that of each.

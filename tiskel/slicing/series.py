@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tiskel.geometry.bspline import Strip, fit_strip
+from tiskel.geometry.bspline import BSplineCurve, fit_bspline
 from tiskel.params import SurfaceParams
 from tiskel.slicing.rings import Ring
 from tiskel.slicing.sections import Case, Section, fit_section, left_out_error
@@ -80,7 +80,7 @@ def _published(v: float, ring: Ring, params: SurfaceParams) -> Section:
     return section
 
 
-def joined_series(sections: tuple[Section, ...], intervals: int, closed: bool) -> Strip:
+def joined_series(sections: tuple[Section, ...], intervals: int, closed: bool) -> BSplineCurve:
     """Return the coefficients of the series as functions of v.
 
     Straight, though lightly held, over rejected slices, and straight on to the
@@ -97,7 +97,7 @@ def joined_series(sections: tuple[Section, ...], intervals: int, closed: bool) -
 
     Returns
     -------
-    Strip
+    BSplineCurve
         Columns a0, a1, b1, a2, b2, ..., in the input's unit; v from 0 to pi.
     """
     good = [section for section in sections if section.case is Case.FITTED]
@@ -118,4 +118,4 @@ def joined_series(sections: tuple[Section, ...], intervals: int, closed: bool) -
         )
         held.append(weights[[i for i, _, _ in ENDS]])
     v, series, weights = (np.concatenate(parts) for parts in (places, values, held))
-    return fit_strip(v, series, weights, intervals, V_STOP, periodic=closed)
+    return fit_bspline(v, series, weights, intervals, V_STOP, periodic=closed)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
-from tiskel.geometry.bspline import Strip, joined
+from tiskel.geometry.bspline import BSplineCurve, joined
 from tiskel.geometry.frames import step_lengths
 from tiskel.surfaces.jets import Jet, Scalar, Vector, combined, cross, dot, plus, scaled
 
@@ -89,17 +89,17 @@ class Tube:
 
     Attributes
     ----------
-    axis : Strip
-        p(v), three columns; all strips are on the same intervals.
-    field : Strip
+    axis : BSplineCurve
+        p(v), three columns; all splines are on the same intervals.
+    field : BSplineCurve
         m(v), three columns.
-    series : Strip
+    series : BSplineCurve
         a0, then a_i and b_i in pairs, 2 N + 1 columns.
     """
 
-    axis: Strip
-    field: Strip
-    series: Strip
+    axis: BSplineCurve
+    field: BSplineCurve
+    series: BSplineCurve
 
     @property
     def closed(self) -> bool:
@@ -115,7 +115,7 @@ class Tube:
         return 2 * pi, V_STOP if self.closed else None
 
     @cached_property
-    def _strip(self) -> Strip:
+    def _strip(self) -> BSplineCurve:
         return joined([self.axis, self.field, self.series])
 
     def at(self, u: Scalar, v: Scalar) -> tuple[Moving, Radius]:

@@ -23,7 +23,7 @@ import numpy as np
 
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
-from tiskel.geometry.bspline import DEGREE, Strip
+from tiskel.geometry.bspline import DEGREE, BSplineCurve
 from tiskel.io import ply
 from tiskel.io.streams import read_bytes, write_bytes
 from tiskel.params import SurfaceParams
@@ -196,11 +196,11 @@ def _surface_of(one: dict[str, Any], cloud: Points) -> FittedSurface:
     )
 
 
-def _strip(rows: Any, closed: bool) -> Strip:
+def _strip(rows: Any, closed: bool) -> BSplineCurve:
     coefficients = np.array(rows, np.float64)
     if coefficients.ndim != 2 or len(coefficients) <= DEGREE or not np.isfinite(coefficients).all():
         raise ValueError(f"a spline needs finite rows of coefficients, more than {DEGREE} of them")
-    return Strip(coefficients, V_STOP, closed)
+    return BSplineCurve(coefficients, V_STOP, closed)
 
 
 def _section_of(one: dict[str, Any]) -> Section:

@@ -11,7 +11,8 @@ import numpy as np
 
 from tiskel.arrays import Indices, Points, diagonal
 from tiskel.errors import TiskelError
-from tiskel.geometry.graph import CurveGraph, RadiusSource, node_radii
+from tiskel.geometry.graph import CurveGraph, node_radii
+from tiskel.geometry.radius import RadiusSource
 from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edges
 from tiskel.methods.laplacian.sampling import front_samples
 from tiskel.methods.trace import MethodCurve, Trace

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.curve import curve_samples
-from tiskel.geometry.graph import RadiusSource
+from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.fit import ConeFit
