@@ -185,7 +185,8 @@ def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -
     fields: Mapping[str, Any] = table.dtype.fields or {}
     kinds = [(fields[name][0], fields[name][1]) for name in names]
     side_by_side = [(np.dtype("<f8"), kinds[0][1] + 8 * i) for i in range(3)]
-    if kinds == side_by_side and table.ndim == 1 and table.flags.c_contiguous and len(table):  # one pass, not three
+    plain = table.ndim == 1 and table.flags.c_contiguous and not table.dtype.hasobject
+    if kinds == side_by_side and plain and len(table):  # one pass, not three
         start = table.view(np.uint8).reshape(len(table), -1)[:, kinds[0][1] : kinds[0][1] + 24]
         return np.ascontiguousarray(start).view(np.float64)
     return np.stack([np.asarray(table[name], np.float64) for name in names], axis=1).reshape(-1, 3)
