@@ -44,7 +44,7 @@ WITHIN = {  # the same inside rooms that have rooms of their own
     "methods.robust": "methods.trace",
     "methods": "methods.trace methods.laplacian methods.robust",
     "io.streams": "",
-    "io.ply": "",
+    "io.ply": "io.streams",
     "io.formats": "io.streams io.ply",
     "io.stages": "io.streams io.ply",
 }

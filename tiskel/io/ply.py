@@ -12,20 +12,22 @@ from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
+from tiskel.io.streams import Bytes
 from tiskel.version import version
 
 Columns = Mapping[str, npt.NDArray[Any]]
 MAGIC = b"ply"
+HEADER_END, HEADER_REST = b"end_header", 12  #: the last line of a header, and its length with any line ending
 FORMAT = 2  #: of the stage files; 1 is still read
 SMALLEST_ROW = 1  # byte; no element of a binary file can hold more rows than the file has bytes
 
 
-def parse(data: bytes, name: str) -> PlyData:
+def parse(data: Bytes, name: str) -> PlyData:
     """Return the elements of a PLY file.
 
     Parameters
     ----------
-    data : bytes
+    data : bytes or map
         What the file holds.
     name : str
         Its name, for messages.
@@ -35,7 +37,7 @@ def parse(data: bytes, name: str) -> PlyData:
     TiskelError
         Where it is cut short, too long or no PLY.
     """
-    stream = io.BytesIO(data)
+    stream = io.BytesIO(data if isinstance(data, bytes) else data[: max(data.find(HEADER_END), 0) + HEADER_REST])
     try:
         ply = PlyData._parse_header(stream)
         for element in ply.elements:
@@ -44,41 +46,42 @@ def parse(data: bytes, name: str) -> PlyData:
                     f"{name}: the header promises {element.count} rows of {element.name}, the file is smaller"
                 )
         if ply.text or any(isinstance(kind, PlyListProperty) for element in ply for kind in element.properties):
-            stream.seek(0)
+            stream = io.BytesIO(data)
             ply = PlyData.read(stream)
+            rest = b"" if ply.text else stream.read()
         else:
-            _read_tables(ply, data, stream)
+            rest = data[_read_tables(ply, data, stream.tell()) :]
     except PlyParseError as error:
         raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
     except (ValueError, MemoryError, UnicodeDecodeError, OverflowError, TypeError, KeyError, EOFError) as error:
         raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
-    surplus = _surplus(ply, data, stream)
+    surplus = _surplus(ply, data, rest)
     if surplus:
         raise TiskelError(f"{name}: {surplus} follow the last row that the header promises; export it again")
     return ply
 
 
-def _read_tables(ply: PlyData, data: bytes, stream: io.BytesIO) -> None:
+def _read_tables(ply: PlyData, data: Bytes, start: int) -> int:
     """Fill the elements of a binary file without lists, each at once; plyfile reads a stream row by row.
 
-    The stream stands behind the header before, and behind the last row after;
-    the tables are views of the data, not to be written to.
+    The rows begin at start; where they end is returned. The tables are views of
+    the data, not to be written to.
     """
     for element in ply.elements:
         kind = element.dtype(ply.byte_order)
-        if stream.tell() + element.count * kind.itemsize > len(data):
+        if start + element.count * kind.itemsize > len(data):
             raise PlyParseError(f"element {element.name!r}: early end-of-file")
-        element.data = np.frombuffer(data, kind, element.count, stream.tell())
-        stream.seek(element.count * kind.itemsize, io.SEEK_CUR)
+        element.data = np.frombuffer(data, kind, element.count, start)
+        start += element.count * kind.itemsize
+    return start
 
 
-def _surplus(ply: PlyData, data: bytes, stream: io.BytesIO) -> str:
+def _surplus(ply: PlyData, data: Bytes, rest: bytes) -> str:
     """Return what the file holds beyond the rows of its header, in words; nothing where it is as promised."""
     if ply.text:
-        rows = [line for line in data.split(b"end_header", 1)[1].splitlines()[1:] if line.strip()]
+        rows = [line for line in bytes(data).split(HEADER_END, 1)[1].splitlines()[1:] if line.strip()]
         more = len(rows) - sum(element.count for element in ply.elements)
         return f"{more} rows" if more > 0 else ""
-    rest = stream.read()
     return f"{len(rest)} bytes" if rest.strip() else ""
 
 

@@ -1,5 +1,6 @@
 """Bytes in and bytes out: files, standard streams, and files that are whole or absent."""
 
+import mmap
 import os
 import sys
 import tempfile
@@ -8,6 +9,7 @@ from pathlib import Path
 from tiskel.errors import TiskelError
 
 STANDARD = "-"
+Bytes = bytes | mmap.mmap
 
 
 def read_bytes(source: str | Path) -> bytes:
@@ -29,6 +31,22 @@ def read_bytes(source: str | Path) -> bytes:
         raise TiskelError(f"no file {path}; check the path") from None
     except OSError as error:
         raise TiskelError(f"cannot read {path}: {error.strerror}") from None
+
+
+def mapped(source: str | Path) -> Bytes:
+    """Return what a file holds, mapped into memory, or what standard input ("-") holds, read.
+
+    A map is read where it is looked at, which saves a copy of large files.
+    Raises TiskelError as :func:`read_bytes` does.
+    """
+    path = Path(source)
+    if str(source) == STANDARD or not path.is_file() or path.stat().st_size == 0:
+        return read_bytes(source)
+    try:
+        with path.open("rb") as file:
+            return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    except OSError:
+        return read_bytes(source)
 
 
 def write_bytes(target: str | Path, data: bytes) -> None:

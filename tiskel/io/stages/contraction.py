@@ -23,7 +23,7 @@ from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.rings import Rings
 from tiskel.io import ply
-from tiskel.io.streams import read_bytes, write_bytes
+from tiskel.io.streams import Bytes, mapped, write_bytes
 from tiskel.methods.trace import Sections, Status, StepRecord
 from tiskel.params import known_settings
 
@@ -119,10 +119,10 @@ def read_contraction(source: str | Path) -> Contraction:
     ...     print(error)
     no file missing.ply; check the path
     """
-    return parse_contraction(read_bytes(source), str(source))
+    return parse_contraction(mapped(source), str(source))
 
 
-def parse_contraction(data: bytes, name: str) -> Contraction:
+def parse_contraction(data: Bytes, name: str) -> Contraction:
     """Return the contraction in the bytes of a stage file.
 
     Parameters

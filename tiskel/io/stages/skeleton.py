@@ -21,7 +21,7 @@ from tiskel.arrays import Edges, Indices, Mask
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.stages.contraction import ORIGIN
-from tiskel.io.streams import read_bytes, write_bytes
+from tiskel.io.streams import Bytes, mapped, write_bytes
 from tiskel.params import known_settings
 from tiskel.skeleton import Skeleton
 
@@ -106,10 +106,10 @@ def read_skeleton(source: str | Path) -> Skeleton:
     ...     print(error)
     no file missing.ply; check the path
     """
-    return parse_skeleton(read_bytes(source), str(source))
+    return parse_skeleton(mapped(source), str(source))
 
 
-def parse_skeleton(data: bytes, name: str) -> Skeleton:
+def parse_skeleton(data: Bytes, name: str) -> Skeleton:
     """Return the skeleton in the bytes of a stage file.
 
     Parameters
