@@ -234,7 +234,7 @@ def fitted(name: str, points: Points | None = None) -> Candidate:
 def with_edges(made: Candidate, edges: Edges) -> Candidate:
     curve = replace(made.curve, edges=edges)
     fit = fit_cones(curve, made.network.points, made.sections.section, rounds=0, straightness=0)
-    return replace(made, curve=curve, fit=fit)
+    return replace(made, fit=fit)
 
 
 def test_a_good_skeleton_raises_no_doubt() -> None:

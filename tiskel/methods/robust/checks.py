@@ -36,10 +36,8 @@ class Candidate:
 
     Attributes
     ----------
-    curve : ConeCurve
-        The curve.
     fit : ConeFit
-        Where the points stand on it.
+        The curve, and where the points stand on it.
     sections : Sections
         What the front found, with the sections of missed branches.
     network : Network
@@ -50,12 +48,16 @@ class Candidate:
         How many gaps were bridged.
     """
 
-    curve: ConeCurve
     fit: ConeFit
     sections: Sections
     network: Network
     solid: Solid
     gaps: int
+
+    @property
+    def curve(self) -> ConeCurve:
+        """The curve, as the foot points are on it."""
+        return self.fit.curve
 
     @cached_property
     def places(self) -> tuple[Points, Numbers]:

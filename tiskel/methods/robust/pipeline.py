@@ -54,4 +54,4 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
             break
         found = fit(longer, again + 1)
     curve, gaps = bridged(found.curve, network, sections, params.bridge_gaps)
-    return Candidate(curve, fit(curve, 0), sections, network, solid, gaps)
+    return Candidate(fit(curve, 0), sections, network, solid, gaps)
