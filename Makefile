@@ -24,7 +24,7 @@ test: $(INSTALLED)
 	$(BIN)/pytest -q
 
 debug: $(INSTALLED)
-	TI_DEBUG=1 TI_OFFLINE_CACHE=0 $(BIN)/pytest -q tests/kernels tests/geometry tests/preprocess tests/methods tests/metrics tests/slicing tests/pipeline
+	TI_DEBUG=1 TI_OFFLINE_CACHE=0 $(BIN)/pytest -q tests/kernels tests/geometry tests/preprocess tests/methods tests/metrics tests/slicing tests/pipeline/test_stages.py
 
 check: $(INSTALLED)
 	$(BIN)/ruff check .

@@ -6,8 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from reference.fixtures import PROGRAM, Load, Runner
+
+settings.register_profile("tiskel", deadline=None)  # timing decides no test; a kernel's first call compiles it
+settings.load_profile("tiskel")
 
 SHARED = Path(__file__).parents[1] / ".." / "shared"
 REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", SHARED / "reference"))
