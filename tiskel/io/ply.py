@@ -45,7 +45,7 @@ def parse(data: Bytes, name: str) -> PlyData:
                 raise TiskelError(
                     f"{name}: the header promises {element.count} rows of {element.name}, the file is smaller"
                 )
-        if ply.text or any(isinstance(kind, PlyListProperty) for element in ply for kind in element.properties):
+        if ply.text or _has_lists(ply.elements):
             stream = io.BytesIO(data)
             ply = PlyData.read(stream)
             rest = b"" if ply.text else stream.read()
@@ -59,6 +59,11 @@ def parse(data: Bytes, name: str) -> PlyData:
     if surplus:
         raise TiskelError(f"{name}: {surplus} follow the last row that the header promises; export it again")
     return ply
+
+
+def _has_lists(elements: Sequence[PlyElement]) -> bool:
+    """Tell whether rows have different lengths somewhere, so that a table is not its bytes."""
+    return any(isinstance(kind, PlyListProperty) for element in elements for kind in element.properties)
 
 
 def _read_tables(ply: PlyData, data: Bytes, start: int) -> int:
@@ -132,7 +137,7 @@ def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -
     everything = {"format": FORMAT, **facts}
     comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in everything.items()]
     file = PlyData(elements, text=False, byte_order="<", comments=comments)
-    if any(isinstance(kind, PlyListProperty) for element in elements for kind in element.properties):
+    if _has_lists(elements):
         out = io.BytesIO()
         file.write(out)
         return out.getvalue()

@@ -9,7 +9,7 @@ ball.
 
 import numpy as np
 
-from tiskel.arrays import Indices, Numbers, Points, Table
+from tiskel.arrays import TINY, Indices, Numbers, Points, Table
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
 
@@ -46,7 +46,7 @@ def on_axes(network: Network, sections: Sections) -> Points:
     scatter = _sums((normals[:, :, None] * normals[:, None, :]).reshape(-1, 9), label, count).reshape(-1, 3, 3)
     values, vectors = np.linalg.eigh(scatter)
     # A tube has no normals along its axis, a ball as many as in any direction.
-    tubular = np.clip(1 - 2 * values[:, 0] / np.maximum(values[:, 1], np.finfo(float).tiny), 0, 1)
+    tubular = np.clip(1 - 2 * values[:, 0] / np.maximum(values[:, 1], TINY), 0, 1)
     axis = vectors[:, :, 0] * np.where(size < FEWEST, 0, tubular)[:, None] ** 0.5
     offset = points - centre[label]
     moved = centre[label] + np.einsum("ij,ij->i", offset, axis[label])[:, None] * axis[label]
@@ -60,7 +60,7 @@ def _roundness(distance: Numbers, label: Indices, size: Numbers) -> Numbers:
     """Return 1 for sections whose points are equally far from the axis, 0 where they are not at all."""
     mean = np.bincount(label, distance, minlength=len(size)) / size
     square = np.bincount(label, distance**2, minlength=len(size)) / size
-    spread = np.sqrt(np.maximum(square - mean**2, 0)) / np.maximum(mean, np.finfo(float).tiny)
+    spread = np.sqrt(np.maximum(square - mean**2, 0)) / np.maximum(mean, TINY)
     return np.asarray(np.clip((RAGGED - spread) / (RAGGED - ROUND), 0, 1))
 
 

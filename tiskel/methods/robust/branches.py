@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import TINY, Indices, Numbers, Points
 from tiskel.geometry.graph import connected_sets, node_radii
 from tiskel.methods.robust.axes import line_centres
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes, with_nodes, without_path
@@ -33,7 +33,6 @@ OFF_DEVIATIONS = 4.0  # the same in standard deviations of the fit [0, 0; for de
 MISSED = 0.5  # local radii that a missed branch sticks out at least [2, 0]
 RIDGE = 1.5  # local radii along the curve: longer is the rim of a flat part, no branch [0, 0; for uneven density]
 FEWEST = 12  # points of a missed branch [1, 0]
-TINY = np.finfo(float).tiny  # stands in for the radius, else a divisor of 0, of a junction whose points all lie on it
 
 
 def without_spurs(curve: ConeCurve, points: Points, sections: Sections) -> ConeCurve:

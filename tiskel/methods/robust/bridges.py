@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Edges, Numbers
+from tiskel.arrays import TINY, Edges, Numbers
 from tiskel.methods.robust.curve import ConeCurve, with_nodes
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
@@ -73,7 +73,7 @@ def open_ends(curve: ConeCurve, network: Network, sections: Sections) -> list[Op
     for path in paths:
         end, radius = int(path[0]), float(curve.radii[path[0]])
         direction = curve.heading(path)
-        direction /= max(float(np.linalg.norm(direction)), np.finfo(float).tiny)
+        direction /= max(float(np.linalg.norm(direction)), TINY)
         near = rows[np.sort(np.array(tree.query_ball_point(curve.nodes[end], AROUND * radius), int))]
         cap = near[(network.points[near] - curve.nodes[end]) @ direction > AHEAD * radius]
         if network.areas[cap].sum() < OPEN * whole * radius**2:
@@ -102,7 +102,7 @@ def _facing_pairs(curve: ConeCurve, ends: list[OpenEnd], widest: float) -> list[
 def _facing_side(curve: ConeCurve, end: OpenEnd, widest: float) -> int | None:
     """Return the node of another branch that an open end looks at, None where it looks at nothing near."""
     gap = curve.nodes - curve.nodes[end.node]
-    width = np.maximum(np.linalg.norm(gap, axis=1), np.finfo(float).tiny)
+    width = np.maximum(np.linalg.norm(gap, axis=1), TINY)
     cosine = gap @ end.direction / width
     near = (cosine > FACING_SIDE) & (width < curve.radii + widest * curve.radii[end.node])
     near[list(end.branch)] = False
@@ -114,7 +114,7 @@ def _with_edges(curve: ConeCurve, pairs: list[tuple[int, int]]) -> ConeCurve:
     """Join nodes by straight lines with a node every radius or so."""
     for a, b in pairs:
         width = float(np.linalg.norm(curve.nodes[a] - curve.nodes[b]))
-        between = max(0, int(2 * width / max(float(curve.radii[a] + curve.radii[b]), np.finfo(float).tiny)) - 1)
+        between = max(0, int(2 * width / max(float(curve.radii[a] + curve.radii[b]), TINY)) - 1)
         share = (np.arange(1, between + 1) / (between + 1))[:, None]
         chain = np.array([a, *range(len(curve.nodes), len(curve.nodes) + between), b], np.int32)
         nodes = (1 - share) * curve.nodes[a] + share * curve.nodes[b]

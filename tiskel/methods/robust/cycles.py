@@ -44,7 +44,10 @@ def without_filled_cycles(
         winding = solid.oriented.winding_numbers(np.concatenate([probes.reshape(-1, 3), curve.nodes]))
         across, own = winding[: probes.size // 3].reshape(-1, len(ALONG)), winding[probes.size // 3 :]
         one, overlapping = _inside(rungs, owner, cycles, curve, across, own), _overlapping(rungs, curve)
-        one = one & overlapping if fitted else one if solid.trusted else one | overlapping
+        if fitted:
+            one &= overlapping
+        elif not solid.trusted:
+            one |= overlapping
         filled = np.bincount(owner[~one], minlength=len(cycles)) == 0
         if not filled.any():
             break

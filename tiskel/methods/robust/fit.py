@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from tiskel.arrays import Indices, Lists, Numbers, Pairs, Points, Stack, Table
+from tiskel.arrays import TINY, Indices, Lists, Numbers, Pairs, Points, Stack, Table
 from tiskel.geometry.solve import BACKENDS
 from tiskel.methods.robust.curve import ConeCurve
 
@@ -102,7 +102,7 @@ def fit_cones(curve: ConeCurve, points: Points, section: Indices, *, rounds: int
         found = foot_points(curve, points, rows, owner[rows], nearby, radial=True)
         step = _step(found, points, start, straightness)
         length = np.linalg.norm(step[:, :3], axis=1)
-        within = np.minimum(1, STEP * curve.radii / np.maximum(length, np.finfo(float).tiny))
+        within = np.minimum(1, STEP * curve.radii / np.maximum(length, TINY))
         least = np.maximum(SHRINK * curve.radii, thinnest)
         radii = np.clip(curve.radii + step[:, 3], least, GROW * curve.radii)
         curve = replace(curve, nodes=curve.nodes + within[:, None] * step[:, :3], radii=radii)
@@ -171,7 +171,7 @@ def _data(fit: ConeFit, points: Points) -> Term:
     out /= np.maximum(np.linalg.norm(out, axis=1), 1e-9 * fit.curve.radii.max())[:, None]
     one, other = (1 - fit.share)[:, None], fit.share[:, None]
     slope = -np.concatenate([one * out, one, other * out, other], axis=1)
-    weight = 1 / np.maximum(1, np.abs(fit.residual) / max(OUTLYING * fit.deviation, np.finfo(float).tiny))
+    weight = 1 / np.maximum(1, np.abs(fit.residual) / max(OUTLYING * fit.deviation, TINY))
     order = np.argsort(fit.edge, kind="stable")
     edge, starts = np.unique(fit.edge[order], return_index=True)
     weighted = (weight[:, None] * slope)[order]
@@ -188,7 +188,7 @@ def _smoothness(curve: ConeCurve, heavy: float, straightness: float) -> list[Ter
         return []
     values = np.concatenate([curve.nodes, curve.radii[:, None]], axis=1)
     before, after = (np.linalg.norm(curve.nodes[triples[:, i]] - curve.nodes[triples[:, 1]], axis=1) for i in (0, 2))
-    whole = np.maximum(before + after, np.finfo(float).tiny)
+    whole = np.maximum(before + after, TINY)
     bend = np.stack([after / whole, -np.ones(len(triples)), before / whole], axis=1)
     blocks = bend[:, :, None] * bend[:, None, :]
     terms: list[Term] = []

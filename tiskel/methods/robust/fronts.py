@@ -14,7 +14,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import TINY, Indices, Numbers, Points
 from tiskel.geometry.graph import component_labels
 from tiskel.geometry.rings import smallest_distances
 from tiskel.methods.robust.axes import on_axes
@@ -90,7 +90,7 @@ def front(
     if across > 0:
         length = length + across * network.lengths
     graph = network.links.copy()
-    graph.data = np.maximum(2 * length / (widths[first] + widths[second]), np.finfo(float).tiny)
+    graph.data = np.maximum(2 * length / (widths[first] + widths[second]), TINY)
     distance = np.full(len(part), np.nan)
     for number in np.unique(part[part >= 0]):
         rows: Indices = np.flatnonzero(part == number).astype(np.int32)

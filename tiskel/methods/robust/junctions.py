@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import TINY, Indices, Numbers, Points
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes, keeps_loops
 
@@ -15,7 +15,6 @@ HOLD = 0.2  # weight of where a junction is, against the lines of its branches [
 FARTHEST = 1.5  # radii that a junction moves at most [5, 3]
 TRIES = 5  # places on the way back from where the lines meet, both ends included [2, 2]
 INSIDE = 0.4  # winding number that a place for a junction has at least [1, 1]
-TINY = np.finfo(float).tiny  # stands in for the radius, else a divisor of 0, of junctions whose points all lie on them
 
 
 def merged_junctions(curve: ConeCurve, nearest: float) -> ConeCurve:
