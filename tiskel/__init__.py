@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tiskel.gallery.make import shape_graph as shape_graph
     from tiskel.geometry.graph import CurveGraph as CurveGraph
     from tiskel.geometry.radius import RadiusSource as RadiusSource
+    from tiskel.geometry.regime import Regime as Regime
     from tiskel.io.clouds import Cloud as Cloud
     from tiskel.io.clouds import load_cloud as load_cloud
     from tiskel.io.curves import Curve as Curve
@@ -81,6 +82,7 @@ _HOME = {
     "PipelineResult": "pipeline",
     "Quality": "metrics.result",
     "RadiusSource": "geometry.radius",
+    "Regime": "geometry.regime",
     "RobustParams": "params",
     "RollParams": "params",
     "RollStatus": "rolling.trajectory",

@@ -22,7 +22,7 @@ class Skeleton(CurveGraph):
 
     Attributes
     ----------
-    nodes, edges, radii, bridged, radius_sources
+    nodes, edges, radii, bridged, radius_sources, regimes
         The curve, see :class:`tiskel.CurveGraph`. Radii are those of the fitted round cones by robust; else the
         mean distance of a node's points of the cloud to it, 0 for a node without points.
     node_of_point : (n,) int32
@@ -130,6 +130,7 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
         radii=made.graph.radii / frame.scale,
         bridged=made.graph.bridged,
         radius_sources=made.graph.radius_sources,
+        regimes=made.graph.regimes,
         node_of_point=made.node_of_point,
         cloud=c.cloud,
         input_rows=c.input_rows,

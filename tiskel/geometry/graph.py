@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Pairs, Points
 from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,8 @@ class CurveGraph:
         Which edges were laid over a gap; the others follow points.
     radius_sources : (v,) uint8
         What each radius is worth, see :class:`RadiusSource`.
+    regimes : (v,) uint8
+        What the body is like about each node, see :class:`Regime`.
 
     Examples
     --------
@@ -46,14 +49,19 @@ class CurveGraph:
     radii: Numbers = field(default_factory=lambda: np.zeros(0))
     bridged: Mask = field(default_factory=lambda: np.zeros(0, np.bool_))
     radius_sources: npt.NDArray[np.uint8] = field(default_factory=lambda: np.zeros(0, np.uint8))
+    regimes: npt.NDArray[np.uint8] = field(default_factory=lambda: np.zeros(0, np.uint8))
 
     def __post_init__(self) -> None:
-        if len(self.radii) != len(self.nodes):
-            object.__setattr__(self, "radii", np.full(len(self.nodes), np.nan))
-        if len(self.bridged) != len(self.edges):
-            object.__setattr__(self, "bridged", np.zeros(len(self.edges), np.bool_))
-        if len(self.radius_sources) != len(self.nodes):
-            object.__setattr__(self, "radius_sources", np.full(len(self.nodes), RadiusSource.UNKNOWN, np.uint8))
+        nodes, edges = len(self.nodes), len(self.edges)
+        unsaid = {
+            "radii": np.full(nodes, np.nan),
+            "bridged": np.zeros(edges, np.bool_),
+            "radius_sources": np.full(nodes, RadiusSource.UNKNOWN, np.uint8),
+            "regimes": np.full(nodes, Regime.UNKNOWN, np.uint8),
+        }
+        for name, values in unsaid.items():
+            if len(getattr(self, name)) != len(values):
+                object.__setattr__(self, name, values)
 
     @cached_property
     def degrees(self) -> Indices:
