@@ -1,6 +1,5 @@
 """Curve graphs: nodes with radii, joined by straight edges; skeletons, cone models and curves of other programs."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -10,6 +9,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Pairs, Points
+from tiskel.geometry.branches import branches_of
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 
@@ -106,7 +106,7 @@ class CurveGraph:
         junction repeats its first node at its end; an isolated node is a branch
         of one.
         """
-        return _branches(self.neighbours)
+        return branches_of(self.neighbours)
 
     @cached_property
     def neighbours(self) -> list[list[int]]:
@@ -227,30 +227,3 @@ def connected_sets(count: int, links: Pairs) -> list[Indices]:
     """Return the connected sets of things 0 to count - 1 that links (l, 2) join, each ascending, (k,) int32."""
     label = component_labels(count, links)
     return [np.flatnonzero(label == number).astype(np.int32) for number in range(int(label.max(initial=-1)) + 1)]
-
-
-def _branches(around: list[list[int]]) -> tuple[Indices, ...]:
-    stops = [node for node in range(len(around)) if len(around[node]) != 2]
-    used: set[tuple[int, int]] = set()
-    found = [[node] for node in stops if not around[node]]
-    for start in [*stops, *range(len(around))]:  # what no stop reaches is a loop of its own
-        for first in around[start]:
-            if (start, first) not in used and (start in stops or not _visited(start, around, used)):
-                found.append(list(_walk(start, first, around, used)))
-    return tuple(np.array(branch, np.int32) for branch in found)
-
-
-def _visited(node: int, around: list[list[int]], used: set[tuple[int, int]]) -> bool:
-    return any((node, other) in used for other in around[node])
-
-
-def _walk(start: int, first: int, around: list[list[int]], used: set[tuple[int, int]]) -> Iterator[int]:
-    """Follow nodes of degree two from a start until a stop, or back to the start."""
-    previous, at = start, first
-    yield start
-    while True:
-        used.update({(previous, at), (at, previous)})
-        yield at
-        if len(around[at]) != 2 or at == start:
-            return
-        previous, at = at, next(other for other in around[at] if other != previous)
