@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
-from tiskel.arrays import Mask, Numbers, Points
+from tiskel.arrays import Indices, Mask, Numbers, Points
 from tiskel.geometry.frames import across
 from tiskel.geometry.graph import CurveGraph
 
@@ -98,26 +99,41 @@ def sample_union(shape: ConeGraph, count: int, generator: np.random.Generator) -
         In the unit of the shape.
     """
     areas = np.array([sum(_areas(*_cone(shape, e))) for e in range(len(shape.edges))])
+    around = _touching(shape)
     found: list[Points] = []
     have = 0
     while have < count:
         shares = generator.multinomial(min(BATCH, 2 * (count - have) + 1000), areas / areas.sum())
-        batch = np.concatenate([_visible(shape, e, int(m), generator) for e, m in enumerate(shares)])
+        batch = np.concatenate([_visible(shape, e, int(m), around[e], generator) for e, m in enumerate(shares)])
         found.append(generator.permutation(batch))
         have += len(batch)
     return np.concatenate(found)[:count]
 
 
-def _visible(shape: ConeGraph, edge: int, count: int, generator: np.random.Generator) -> Points:
+def _touching(shape: ConeGraph) -> list[Indices]:
+    """Return for each part the others whose bounding balls meet its own."""
+    ends = shape.nodes[shape.edges]
+    middle, reach = ends.mean(axis=1), shape.lengths / 2 + shape.radii[shape.edges].max(axis=1)
+    lists = cKDTree(middle).query_ball_point(middle, 1.01 * (reach + reach.max()), return_sorted=True)
+    found = []
+    for e, near in enumerate(lists):
+        others: Indices = np.array(near, np.int32)
+        meet = np.linalg.norm(middle[others] - middle[e], axis=1) <= 1.01 * (reach[others] + reach[e])
+        found.append(others[meet & (others != e)])
+    return found
+
+
+def _visible(
+    shape: ConeGraph, edge: int, count: int, others: Indices, generator: np.random.Generator
+) -> Points:  # fmt: skip
     """Sample one cone and drop what lies inside another part or on an open end."""
     a, b, ra, rb = _cone(shape, edge)
     points, end = sample_cone(a, b, ra, rb, count, generator)
     opened = [np.isin(node, shape.open_ends) for node in shape.edges[edge]]
     keep: Mask = ~((end == 0) & opened[0] | (end == 1) & opened[1])
     depth = 1e-9 * max(ra, rb)  # a point on the common surface of two parts belongs to both
-    for other in range(len(shape.edges)):
-        if other != edge:
-            keep &= signed_distance(points, shape, other) > -depth
+    for other in others.tolist():
+        keep &= signed_distance(points, shape, other) > -depth
     return points[keep]
 
 
