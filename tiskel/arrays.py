@@ -141,6 +141,11 @@ class Frame:
         """Return points (n, 3) of the input in normalised coordinates."""
         return np.ascontiguousarray((points - self.centre) * self.scale)
 
+    def place(self, place: tuple[float, float, float]) -> tuple[float, float, float]:
+        """Return one place of the input in normalised coordinates."""
+        x, y, z = self.apply(np.array([place]))[0].tolist()
+        return x, y, z
+
     def undo(self, points: Points) -> Points:
         """Return normalised points (n, 3) in the units of the input."""
         return points / self.scale + self.centre

@@ -162,7 +162,7 @@ def contract(
     check_solid(cloud[distinct])
     frame = normalisation(cloud[distinct], params.normalise)
     chosen = None if weights is None else _weights(weights, len(every))[finite][distinct]
-    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params, chosen)
+    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
     warnings = _warnings(len(every) - len(cloud), len(cloud) - len(distinct), trace.status)

@@ -123,7 +123,7 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
         raise TiskelError("the contraction holds no point; run tiskel contract again")
     settings = (params or SkeletonParams()).over(c.params)
     trace, frame = c.as_trace()
-    made = METHODS[settings.method].curve(trace, settings)
+    made = METHODS[settings.method].curve(trace, settings.placed(frame.place))
     return Skeleton(
         nodes=frame.undo(made.graph.nodes),
         edges=made.graph.edges,

@@ -4,17 +4,20 @@ A method has only the settings that it reads; one that is given to another metho
 is an error that names the method it belongs to.
 """
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields, replace
 from math import inf
 from typing import Any, Literal, get_args
 
 from tiskel.errors import TiskelError
-from tiskel.params.checks import among, at_least, between
+from tiskel.params.checks import among, at_least, between, finite
 
 Method = Literal["robust", "gls", "lbc"]
 Normalisation = Literal["side", "diagonal"]
 Solver = Literal["scipy", "cholmod"]
+RegimeChoice = Literal["auto", "tube", "wire"]
+Topology = Literal["auto", "tree", "loops"]
+Place = tuple[float, float, float]
 
 MIN_POINTS = 10  #: fewer distinct points have no surface to speak of
 SIDE = 1.6  #: length that normalisation gives the longest side or the diagonal [T]
@@ -51,6 +54,10 @@ class ContractionParams:
         """Return k for a cloud of so many points."""
         raise NotImplementedError
 
+    def placed(self, place: Callable[[Place], Place]) -> "ContractionParams":
+        """Return the settings with all places in other coordinates."""
+        return self
+
 
 @dataclass(frozen=True, kw_only=True)
 class RobustParams(ContractionParams):
@@ -76,6 +83,10 @@ class RobustParams(ContractionParams):
     bridge_gaps: float = 4.0  #: widest gap that is bridged, in sums of the radii at both sides; 0: none is
     straightness: float = 0.1  #: weight that holds a node between its two neighbours, in its share of the points
     rounds: int = 4  #: of the fit of round cones; half as many after a change to the graph
+    regime: RegimeChoice = "auto"  #: what the limbs are: tubes, or wires thinner than the points are apart
+    topology: Topology = "auto"  #: of wires: whether limbs may close loops
+    root: Place | None = None  #: of wires: where limbs grow from, in the input's unit; None: where most points are
+    seen_from: Place | None = None  #: where the sensor stood, in the input's unit, if there was one
 
     def __post_init__(self) -> None:
         among("normalise", self.normalise, get_args(Normalisation))
@@ -88,9 +99,19 @@ class RobustParams(ContractionParams):
         between("least_part", self.least_part, 0, 1)
         for name in ("least_branch", "merge_junctions", "bridge_gaps", "straightness"):
             between(name, getattr(self, name), 0, inf)
+        among("regime", self.regime, get_args(RegimeChoice))
+        among("topology", self.topology, get_args(Topology))
+        for name in ("root", "seen_from"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, tuple(map(float, getattr(self, name))))
+                finite(name, getattr(self, name), 3)
 
     def neighbours_for(self, count: int) -> int:
         return min(count, self.neighbours)
+
+    def placed(self, place: Callable[[Place], Place]) -> "RobustParams":
+        root = None if self.root is None else place(self.root)
+        return replace(self, root=root, seen_from=None if self.seen_from is None else place(self.seen_from))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields, replace
 from typing import TypeVar
 
-from tiskel.params.methods import ContractionParams, refuse_foreign, settings_of
+from tiskel.params.methods import ContractionParams, Place, RegimeChoice, Topology, refuse_foreign, settings_of
 
 P = TypeVar("P", bound=ContractionParams)
 
@@ -32,6 +32,10 @@ class SkeletonParams:
     bridge_gaps: float | None = None
     straightness: float | None = None
     rounds: int | None = None
+    regime: RegimeChoice | None = None
+    topology: Topology | None = None
+    root: Place | None = None
+    seen_from: Place | None = None
 
     def over(self, params: P) -> P:
         """Return a method's settings with these in their place; raise TiskelError for one that it does not read."""

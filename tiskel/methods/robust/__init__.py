@@ -28,6 +28,7 @@ from tiskel.methods.robust.checks import Candidate, radius_sources, warnings_of
 from tiskel.methods.robust.fronts import contract_by_fronts, further_front
 from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
+from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
 from tiskel.timing import Stopwatch
@@ -60,16 +61,27 @@ def curve(trace: Trace, params: RobustParams) -> MethodCurve:
     if trace.sections is None:
         raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
     network = trace.prepared or prepared(trace.cloud[trace.rows], params.neighbours_for(len(trace.rows)))
+    best = _best(network, trace, params)
+    return _translated(best, trace, network)
+
+
+def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
+    """Return the best curve, of tubes or of wires."""
+    assert trace.sections is not None  # curve() has seen to that
     contracted = np.ascontiguousarray(trace.points @ network.axes.T)
     solid = solid_of(network.oriented(contracted))
+    if params.regime == "wire" or (params.regime == "auto" and surely_wires(network)):
+        return wires(network, solid, params)
     best = fitted_curve(network, solid, trace.sections, params)
+    if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params), best):
+        return thin
     for number in range(1, params.extra_fronts + 1):
         if best.misfit < number * DOUBTFUL:
             break
         sections = further_front(network, contracted, params, number)
         other = fitted_curve(network, solid, sections, params)
         best = other if other.misfit < CLEARLY * best.misfit else best
-    return _translated(best, trace, network)
+    return best
 
 
 def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
@@ -84,5 +96,6 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
         node[lost] = cKDTree(curve.nodes).query(network.points[lost])[1]
     contracted = trace.points.copy()
     contracted[fit.rows] = fit.places @ network.axes
-    graph = CurveGraph(curve.nodes @ network.axes, curve.edges, curve.radii, curve.bridged, radius_sources(best))
+    nodes = curve.nodes @ network.axes
+    graph = CurveGraph(nodes, curve.edges, curve.radii, curve.bridged, radius_sources(best), regimes_of(best))
     return MethodCurve(graph, node[trace.survivor_of()], contracted, warnings_of(best))

@@ -93,6 +93,8 @@ class Candidate:
 def radius_sources(found: Candidate) -> npt.NDArray[np.uint8]:
     """Return (v,) what the radius of each node is worth: thin ones are bounds, those on bridges come from a model."""
     curve = found.curve
+    if (curve.radius_sources != RadiusSource.UNKNOWN).any():
+        return curve.radius_sources  # wires know
     sources = np.full(len(curve.nodes), RadiusSource.MEASURED, np.uint8)
     sources[curve.radii < SPARSE * found.network.spacing] = RadiusSource.BOUNDED
     bridges = np.bincount(curve.edges[curve.bridged].ravel(), minlength=len(curve.nodes))

@@ -81,6 +81,10 @@ class Network:
         whole = sparse.csr_array(half + half.T + sparse.eye_array(len(self.points), format="csr"))
         return sparse.csr_array(sparse.diags_array(1 / whole.sum(axis=1)) @ whole)
 
+    def placed(self, place: tuple[float, float, float]) -> Numbers:
+        """Return a place (3,) of the given coordinates in the cloud's own axes."""
+        return np.asarray(self.axes @ np.array(place))
+
     def rings(self) -> Rings:
         """Return the neighbours that count as open rings, nearest first."""
         sizes = self.kept.sum(axis=1).astype(np.int32)

@@ -1,0 +1,78 @@
+"""Regimes: whether a cloud is one of tubes or of wires, decided by what describes it better.
+
+Fronts and round cones need points all about a limb; on twigs thinner than their
+points are apart sections fall apart, and cones span the crown. A cloud is surely
+of wires where many neighbourhoods are lines. Where tubes enclose no inside, the
+wire regime is tried, and kept where its limbs are thin and it explains the cloud:
+as well as tubes for a crown of many ends, better for a few twigs.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from tiskel.arrays import TINY, Numbers
+from tiskel.geometry.regime import Regime
+from tiskel.geometry.solid import Solid
+from tiskel.methods.robust.checks import FAR, Candidate
+from tiskel.methods.robust.fit import foot_points, nearby_edges
+from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.wire import wire_curve
+from tiskel.params import RobustParams
+
+# Found by trial on generated trees, the shapes of the gallery, clean and degraded, and on scans.
+LINE_NEIGHBOURS = 12  # points, itself included, that say whether the cloud is a line about a point
+LINE = 0.6  # (s1 - s2) / s1 with the root eigenvalues of the scatter: a line above it
+SURELY = 0.09  # share of such points from which on a cloud is of wires [tubes at most 0.07, thin trees 0.12 to 0.63]
+THIN = 2.2  # spacings: median radius up to which limbs are wires [generated trees to 2.0, noisy tubes from 2.3]
+CUT = 3.0  # most that a point counts as unexplained
+CROWN = 15  # ends from which on a body is tree-like [tubes with loops, sampled coarsely, have up to 9]
+NO_WORSE = 1.5  # of what tubes leave unexplained, what wires may leave of a crown [trees to 1.36, sheets from 2.9]
+BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
+
+
+def surely_wires(network: Network) -> bool:
+    """Tell whether so many neighbourhoods are lines that no tube needs to be looked for."""
+    rows = network.neighbours[:, :LINE_NEIGHBOURS]
+    offset = network.points[rows] - network.points[rows].mean(axis=1, keepdims=True)
+    root = np.sqrt(np.maximum(np.linalg.eigvalsh(np.einsum("nki,nkj->nij", offset, offset)), 0))
+    return bool(((root[:, 2] - root[:, 1]) > LINE * np.maximum(root[:, 2], TINY)).mean() > SURELY)
+
+
+def maybe_wires(found: Candidate) -> bool:
+    """Tell whether wires are worth a try: where tubes enclose nothing that could be called an inside."""
+    return not found.solid.trusted
+
+
+def wires(network: Network, solid: Solid, params: RobustParams) -> Candidate:
+    """Return the curve of the wire regime, and what judges it."""
+    curve, sections = wire_curve(network, params)
+    owned = np.flatnonzero(sections.section >= 0).astype(np.int32)
+    if not len(curve.edges):
+        owned = owned[:0]
+    fit = foot_points(curve, network.points, owned, sections.section[owned], nearby_edges(curve))
+    return Candidate(fit, sections, network, solid, int(curve.bridged.sum()))
+
+
+def shorter(thin: Candidate, thick: Candidate) -> bool:
+    """Tell whether wires describe a cloud better than tubes do."""
+    worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
+    return _thickness(thin) < THIN and _unexplained(thin) < worse * _unexplained(thick)
+
+
+def _thickness(found: Candidate) -> float:
+    """Return the median radius about the points, in spacings."""
+    return float(np.median(found.fit.radii)) / found.network.spacing
+
+
+def _unexplained(found: Candidate) -> float:
+    """Return how far the points are from the cones, in spacings or shares of the radius, in the mean."""
+    unit = np.maximum(found.network.spacing, FAR * found.fit.radii)
+    rest: Numbers = np.minimum(np.abs(found.fit.residual) / unit, CUT)
+    return float(rest.sum() + CUT * (len(found.network.points) - len(rest))) / len(found.network.points)
+
+
+def regimes_of(found: Candidate) -> npt.NDArray[np.uint8]:
+    """Return (v,) the regime of each node: what the wire regime said, else that of tubes."""
+    if (found.curve.regimes != Regime.UNKNOWN).any():
+        return found.curve.regimes
+    return np.full(len(found.curve.nodes), Regime.TUBE, np.uint8)

@@ -1,0 +1,39 @@
+"""The wire regime: limbs thinner than their points are apart, and the thick limbs that they grow from.
+
+Sections of a front over a surface fall apart on wires. Here the curve follows the
+points instead (the steps are those of tree reconstruction: AdTree, Du et al. 2019;
+TEASAR, Sato et al. 2000; Verroust and Lazarus 2000):
+
+1. A neighbour graph, its pieces joined by their shortest links (:mod:`.links`).
+2. From every point the way to a root that keeps to the points (:mod:`.routes`).
+3. Bins of that way fall into sections, twigs each into their own, a trunk into one (:mod:`.levels`).
+4. The longest way is a limb; of every next one, what stands apart from the limbs before (:mod:`.limbs`).
+5. Nodes are the means of their points; where these lie all about the limb, round cones are fitted, and the radius is
+   measured, elsewhere it is a bound (:mod:`.curve`).
+6. Loops, where ends meet head on and the body is no tree (:mod:`.loops`).
+"""
+
+from tiskel.methods.robust.curve import ConeCurve
+from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.wire.curve import curve_of
+from tiskel.methods.robust.wire.levels import levels_of
+from tiskel.methods.robust.wire.limbs import limbs_of
+from tiskel.methods.robust.wire.links import BRIDGE, links_of
+from tiskel.methods.robust.wire.loops import with_loops
+from tiskel.methods.robust.wire.routes import routes_of
+from tiskel.methods.trace import Sections
+from tiskel.params import RobustParams
+
+SMALLEST_PART = 10  # points; separate parts with fewer get no curve, unless there are no larger ones
+
+
+def wire_curve(network: Network, params: RobustParams) -> tuple[ConeCurve, Sections]:
+    """Return the curve of a cloud of wires, and the sections that its nodes stand for."""
+    points = network.points
+    links = links_of(points, max(SMALLEST_PART, int(params.least_part * len(points))))
+    root = None if params.root is None else network.placed(params.root)
+    routes = routes_of(points, links, root)
+    levels = levels_of(points, links, routes, BRIDGE)
+    limbs = limbs_of(levels, links.spacing)
+    curve, sections = curve_of(points, links.spacing, levels, limbs, params)
+    return with_loops(curve, points, sections, links, params.topology), sections

@@ -1,0 +1,119 @@
+"""The curve of the limbs: where its nodes are, and what their radii are worth."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
+from tiskel.geometry.graph import tidy_edges
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
+from tiskel.methods.robust.curve import ConeCurve
+from tiskel.methods.robust.fit import fit_cones
+from tiskel.methods.robust.wire.levels import Levels, sums, widest_gaps
+from tiskel.methods.robust.wire.limbs import Limbs
+from tiskel.methods.trace import Sections
+from tiskel.params import RobustParams
+
+MEASURING = 8  # points that measure a radius, at least, over
+TURN = np.pi  # half a turn about the limb: three points of a circle anywhere on it determine it, and noise with them
+THICK = 1.0  # spacings in a radius, from which on a limb is a tube
+
+
+def curve_of(
+    points: Points, spacing: float, levels: Levels, limbs: Limbs, params: RobustParams
+) -> tuple[ConeCurve, Sections]:
+    """Return the curve with the nodes that limbs pass through, and its sections, one for each node."""
+    roots = np.flatnonzero(levels.parents < 0)
+    passed = np.union1d(limbs.edges.ravel(), roots)
+    name = np.full(len(levels.centres), -1, np.int32)
+    name[passed] = np.arange(len(passed), dtype=np.int32)
+    section = np.append(name[limbs.owner], np.int32(-1))[levels.section]
+    rows, count = np.flatnonzero(section >= 0), len(passed)
+    label = section[rows]
+    size = np.bincount(label, minlength=count)
+    nodes = sums(points[rows], label, count) / size[:, None]
+    order = np.sort(name[limbs.edges], axis=1)
+    edges = tidy_edges(order)
+    bridges = {tuple(edge) for edge, bridge in zip(order.tolist(), limbs.bridged, strict=True) if bridge}
+    curve = ConeCurve(
+        nodes=nodes, edges=edges, radii=np.zeros(count),
+        bridged=np.array([tuple(edge) in bridges for edge in edges.tolist()], bool),
+        levels=np.zeros(count, np.int32), node_of_section=np.append(np.arange(count), -1).astype(np.int32),
+        section_sizes=size.astype(float),
+    )  # fmt: skip
+    curve = _with_radii(curve, points[rows], label, spacing)
+    return _fitted(curve, points, section, params), Sections(section, np.where(section >= 0, 0, -1).astype(np.int32))
+
+
+def _with_radii(curve: ConeCurve, points: Points, label: Indices, spacing: float) -> ConeCurve:
+    """Return the curve with radii, what they are worth, and regimes; label (n,) is the node of each point."""
+    count, axis = len(curve.nodes), _directions(curve)
+    offset = points - curve.nodes[label]
+    offset = offset - np.einsum("ij,ij->i", offset, axis[label])[:, None] * axis[label]
+    away = np.linalg.norm(offset, axis=1)
+    size = np.bincount(label, minlength=count)
+    mean, most = np.bincount(label, away, minlength=count) / np.maximum(size, 1), np.zeros(count)
+    np.maximum.at(most, label, away)
+    measured = (size >= MEASURING) & (widest_gaps(offset, axis, label) < TURN)
+    radii = np.where(measured, mean, _even(curve, most))
+    radii, sources = _modelled(curve, radii, measured)
+    thick = measured & (radii > THICK * spacing)
+    regimes = np.where(thick, Regime.TUBE, Regime.WIRE).astype(np.uint8)
+    return replace(curve, radii=np.maximum(radii, TINY), radius_sources=sources, regimes=regimes)
+
+
+def _directions(curve: ConeCurve) -> Points:
+    """Return (v, 3) the direction of the limb at every node: that of the edges there, the longest ways first."""
+    first, second = curve.edges.T
+    along = curve.nodes[second] - curve.nodes[first]
+    scatter = np.zeros((len(curve.nodes), 3, 3))
+    for ends in (first, second):
+        np.add.at(scatter, ends, along[:, :, None] * along[:, None, :])
+    return np.asarray(np.linalg.eigh(scatter)[1][:, :, 2])
+
+
+def _even(curve: ConeCurve, values: Numbers) -> Numbers:
+    """Return the largest value of every node and its neighbours: one point less must not shrink a bound."""
+    found: Numbers = values.copy()
+    for one, other in (curve.edges.T, curve.edges[:, ::-1].T):
+        np.maximum.at(found, one, values[other])
+    return found
+
+
+def _modelled(
+    curve: ConeCurve, radii: Numbers, measured: Mask
+) -> tuple[Numbers, np.ndarray[tuple[int], np.dtype[np.uint8]]]:
+    """Return radii, interpolated between two measured nodes of a branch, and their sources."""
+    radii, sources = radii.copy(), np.where(measured, RadiusSource.MEASURED, RadiusSource.BOUNDED).astype(np.uint8)
+    for branch in curve.branches:
+        known = np.flatnonzero(measured[branch])
+        if len(known) < 2:
+            continue
+        way = np.append(0, np.cumsum(np.linalg.norm(np.diff(curve.nodes[branch], axis=0), axis=1)))
+        inner = np.arange(known[0] + 1, known[-1])
+        inner = inner[~measured[branch[inner]]]
+        radii[branch[inner]] = np.interp(way[inner], way[known], radii[branch[known]])
+        sources[branch[inner]] = RadiusSource.MODELLED
+    return radii, sources
+
+
+def _fitted(curve: ConeCurve, points: Points, section: Indices, params: RobustParams) -> ConeCurve:
+    """Return the curve with round cones fitted where it is a tube; wires stay as they are, joined to it as before."""
+    inside = np.flatnonzero(curve.regimes == Regime.TUBE)
+    name = np.full(len(curve.nodes) + 1, -1, np.int32)
+    name[inside] = np.arange(len(inside), dtype=np.int32)
+    edges = name[curve.edges]
+    edges = edges[(edges >= 0).all(axis=1)]
+    if not len(edges):
+        return curve
+    part = ConeCurve(
+        nodes=curve.nodes[inside], edges=edges, radii=curve.radii[inside], levels=curve.levels[inside],
+        node_of_section=np.append(np.arange(len(inside)), -1).astype(np.int32),
+        section_sizes=curve.section_sizes[inside],
+    )  # fmt: skip
+    fitted = fit_cones(part, points, name[section], rounds=params.rounds, straightness=params.straightness).curve
+    nodes, radii = curve.nodes.copy(), curve.radii.copy()
+    linked = np.unique(edges)
+    nodes[inside[linked]], radii[inside[linked]] = fitted.nodes[linked], fitted.radii[linked]
+    return replace(curve, nodes=nodes, radii=radii)

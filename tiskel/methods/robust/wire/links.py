@@ -1,0 +1,139 @@
+"""Links: the neighbour graph of a cloud of wires, its spacing, and its pieces joined across gaps.
+
+The spacing of points on wires has to resist uneven density, so it is taken from
+the Euclidean minimum spanning tree, which has one edge a point, and not from
+nearest neighbours, whose distances shrink to nothing where points come in pairs.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Pairs, Points
+from tiskel.geometry.neighbours import nearest_neighbours
+
+# Found by trial on generated trees (tiskel.gallery.trees), N r / L of their twigs from 0.1 to 5.
+NEIGHBOURS = 20  # points, itself included, that a point is linked with: they reach across a ring of so many
+QUANTILE = 0.75  # of the edges of the minimum spanning tree: the spacing; 1.4 times the median of even clouds
+BRIDGE = 4.0  # spacings: longer links lead over a gap
+WIDEST = 0.12  # widest gap that is crossed, in the extent of the larger piece; patches cut from trees are narrower
+SEARCH = 64  # neighbours of points in small pieces that are searched first for another piece
+
+
+@dataclass(frozen=True, eq=False)
+class Links:
+    """The neighbour graph.
+
+    Attributes
+    ----------
+    first, second : (e,) int32
+        The two points of every link, both ways.
+    lengths : (e,) float64
+        Its length.
+    spacing : float
+        How far the points are apart along wires.
+    kept : (n,) bool
+        Which points belong to the graph; the others are in small pieces far from all others.
+    """
+
+    first: Indices
+    second: Indices
+    lengths: Numbers
+    spacing: float
+    kept: Mask
+
+    @property
+    def graph(self) -> sparse.csr_array:
+        """The symmetric matrix (n, n) of lengths."""
+        return _matrix(self.first, self.second, self.lengths, len(self.kept))
+
+
+def links_of(points: Points, least: int) -> Links:
+    """Return the links of points (n, 3); pieces of less than least points that are far from all others are left out."""
+    count = len(points)
+    neighbours, squares = nearest_neighbours(points, min(NEIGHBOURS, count))
+    first = np.repeat(np.arange(count, dtype=np.int32), neighbours.shape[1] - 1)
+    second, lengths = neighbours[:, 1:].ravel(), np.sqrt(squares[:, 1:].ravel())
+    graph = _symmetric(first, second, lengths, count)
+    tree = minimum_spanning_tree(graph)
+    spacing = float(np.quantile(tree.data, QUANTILE))
+    joins, kept = _joins(points, graph, spacing, least)
+    ends = np.concatenate([joins, joins[:, ::-1]])
+    graph = graph.tocoo()
+    apart = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
+    return Links(
+        np.concatenate([graph.row, ends[:, 0]]).astype(np.int32),
+        np.concatenate([graph.col, ends[:, 1]]).astype(np.int32),
+        np.maximum(np.concatenate([graph.data, apart]), TINY),
+        spacing,
+        kept,
+    )
+
+
+def _symmetric(first: Indices, second: Indices, lengths: Numbers, count: int) -> sparse.csr_array:
+    graph = _matrix(first, second, np.maximum(lengths, TINY), count)
+    return sparse.csr_array(graph.maximum(graph.T))
+
+
+def _matrix(first: Indices, second: Indices, values: Numbers, count: int) -> sparse.csr_array:
+    return sparse.csr_array(sparse.coo_array((values, (first, second)), shape=(count, count)))
+
+
+def _joins(points: Points, graph: sparse.csr_array, spacing: float, least: int) -> tuple[Pairs, Mask]:
+    """Return the shortest links (j, 2) between pieces, and which points are in the pieces that are kept (n,).
+
+    Round by round every piece but the largest is joined to the nearest other
+    (Boruvka's minimum spanning tree), where the gap is narrow against the larger
+    of the two. A small piece further away is no part of the body.
+    """
+    piece = connected_components(graph, directed=False)[1].astype(np.int32)
+    joins: list[tuple[int, int]] = []
+    while piece.max() > 0:
+        sizes = np.bincount(piece)
+        found = [
+            link
+            for link in _shortest(points, piece, int(sizes.argmax()))
+            if _narrow(points, piece, link, spacing, least)
+        ]
+        if not found:
+            break
+        joins += [(one, other) for _, one, other in found]
+        ends = np.array([(piece[one], piece[other]) for _, one, other in found])
+        merged = sparse.coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(sizes), len(sizes)))
+        piece = connected_components(merged, directed=False)[1].astype(np.int32)[piece]
+    sizes = np.bincount(piece)
+    kept = (sizes >= min(least, sizes.max()))[piece]
+    return np.array(joins, np.int32).reshape(-1, 2), np.asarray(kept)
+
+
+def _shortest(points: Points, piece: Indices, largest: int) -> list[tuple[float, int, int]]:
+    """Return the shortest link from every piece but the largest to another: its length and its two points."""
+    tree, rows = cKDTree(points), np.flatnonzero(piece != largest)
+    best: dict[int, tuple[float, int, int]] = {}
+    count = min(SEARCH, len(points))
+    while len(rows):
+        distance, near = tree.query(points[rows], k=count)
+        other = piece[near] != piece[rows][:, None]
+        has = other.any(axis=1)
+        nearest = other.argmax(axis=1)
+        for place in np.flatnonzero(has).tolist():
+            row, at = int(rows[place]), int(nearest[place])
+            link = (float(distance[place, at]), row, int(near[place, at]))
+            best[int(piece[row])] = min(best.get(int(piece[row]), link), link)
+        # A piece whose points saw none but their own is larger than the search.
+        rows = rows[~has & ~np.isin(piece[rows], list(best))]
+        count = min(4 * count, len(points))
+    return [best[number] for number in sorted(best)]
+
+
+def _narrow(points: Points, piece: Indices, link: tuple[float, int, int], spacing: float, least: int) -> bool:
+    """Tell whether a gap is narrow against the larger of the pieces at its sides, and a small one against both."""
+    sides = [points[piece == piece[end]] for end in link[1:]]
+    extents = [float(np.linalg.norm(np.ptp(side, axis=0))) for side in sides]
+    widest = WIDEST * max(extents)
+    if min(map(len, sides)) < least:
+        widest = min(widest, *extents)
+    return link[0] <= max(BRIDGE * spacing, widest)

@@ -1,0 +1,74 @@
+"""Loops: where the two halves of a ring of wire meet, which a tree of shortest ways has to cut.
+
+The ways around a loop part at one place and meet at another, head on, so that a
+limb ends where another is near and points at it. In a crown twigs end near others
+by chance; there are many more ends than such meetings, and none is taken for a
+loop unless the user says so.
+"""
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import dijkstra
+
+from tiskel.arrays import Edges, Points
+from tiskel.geometry.graph import component_labels
+from tiskel.methods.robust.curve import ConeCurve, with_nodes
+from tiskel.methods.robust.wire.links import Links
+from tiskel.methods.trace import Sections
+from tiskel.params import Topology
+
+# Found by trial on rings, stents and generated trees.
+REACH = 3.0  # spacings between the points of an end and of what it meets, at most
+DETOUR = 10.0  # spacings along the curve between the two, at least
+RADII = 4.0  # the same in the sum of the radii at both
+FACING = 0.0  # cosine of the end's direction to what it meets, at least
+
+
+def with_loops(
+    curve: ConeCurve, points: Points, sections: Sections, links: Links, topology: Topology
+) -> ConeCurve:  # fmt: skip
+    """Return the curve with the edges that close its loops; topology says whether there are any.
+
+    Of its own accord only in parts that have no more ends left than loops.
+    """
+    if topology == "tree":
+        return curve
+    pairs = _meetings(curve, sections, links)
+    if topology == "auto" and len(pairs):
+        part = component_labels(len(curve.nodes), curve.edges)
+        closed = with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32))
+        ends = np.bincount(part[closed.degrees == 1], minlength=int(part.max()) + 1)
+        loops = np.bincount(part[pairs[:, 0]], minlength=int(part.max()) + 1)
+        pairs = pairs[(ends <= loops)[part[pairs[:, 0]]]]
+    return with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32)) if len(pairs) else curve
+
+
+def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
+    """Return pairs of nodes (p, 2): ends, and what each of them points at, within reach and far along the curve."""
+    ends = np.flatnonzero(curve.degrees == 1)
+    near = links.lengths <= REACH * links.spacing
+    one, other = sections.section[links.first[near]], sections.section[links.second[near]]
+    chosen = (one >= 0) & (other >= 0) & (one != other) & np.isin(one, ends)
+    pairs = np.unique(np.stack([one[chosen], other[chosen]], axis=1), axis=0)
+    if not len(pairs) or not len(ends):
+        return np.zeros((0, 2), np.int32)
+    count, (first, second) = len(curve.nodes), curve.edges.T
+    graph = sparse.coo_array((np.maximum(curve.lengths, 1e-300), (first, second)), shape=(count, count)).tocsr()
+    along = dijkstra(graph, directed=False, indices=ends)
+    heading = {int(path[0]): curve.heading(path) for path in curve.paths_from(ends=True)}
+    found: dict[int, tuple[float, int]] = {}
+    for end, node in pairs.tolist():
+        way = curve.nodes[node] - curve.nodes[end]
+        apart = float(np.linalg.norm(way))
+        far = max(DETOUR * links.spacing, RADII * float(curve.radii[end] + curve.radii[node]))
+        detour = float(along[np.searchsorted(ends, end), node])
+        if far < detour < np.inf and float(heading[end] @ way) >= FACING:
+            found[end] = min(found.get(end, (apart, node)), (apart, node))
+    # An end that another end has met already is closed.
+    taken: set[int] = set()
+    chosen_pairs = []
+    for _, end, node in sorted((apart, end, node) for end, (apart, node) in found.items()):
+        if end not in taken and node not in taken:
+            chosen_pairs.append((end, node))
+            taken |= {end} | ({node} if curve.degrees[node] == 1 else set())
+    return np.array(chosen_pairs, np.int32).reshape(-1, 2)
