@@ -12,6 +12,9 @@ from tiskel.arrays import Indices, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.labels import labels
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 from tiskel.methods import METHODS
 from tiskel.params import ContractionParams, SkeletonParams
 
@@ -73,12 +76,19 @@ class Skeleton(CurveGraph):
         return branch
 
     def to_networkx(self) -> "networkx.Graph":
-        """Return a networkx.Graph with node attributes x, y, z, radius and edge attributes length and bridged."""
+        """Return a networkx.Graph.
+
+        Nodes have x, y, z, radius, radius_source ("measured", "bounded",
+        "modelled", "unknown") and regime ("tube", "sheet", "wire",
+        "unknown"), edges length and bridged.
+        """
         import networkx
 
         network = networkx.Graph()
-        for i, ((x, y, z), radius) in enumerate(zip(self.nodes.tolist(), self.radii.tolist(), strict=True)):
-            network.add_node(i, x=x, y=y, z=z, radius=radius)
+        sources, regimes = labels(RadiusSource, self.radius_sources), labels(Regime, self.regimes)
+        said = zip(self.nodes.tolist(), self.radii.tolist(), sources, regimes, strict=True)
+        for i, ((x, y, z), radius, source, regime) in enumerate(said):
+            network.add_node(i, x=x, y=y, z=z, radius=radius, radius_source=source, regime=regime)
         measured = zip(self.edges.tolist(), self.lengths.tolist(), self.bridged.tolist(), strict=True)
         for (a, b), length, bridged in measured:
             network.add_edge(a, b, length=length, bridged=bridged)
