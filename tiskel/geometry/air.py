@@ -42,16 +42,31 @@ class Air:
         Whether each is.
     distance : (q,) float64
         How far each is from the nearest point, in the unit of the curve.
-    share : float or None
-        The share of the curve's length that is; None for a curve without length.
+    weight : (q,) float64
+        The share of the curve's length that each stands for; 0 for a curve without length.
     """
 
     places: Mask
     distance: Numbers
-    share: float | None
+    weight: Numbers
+
+    @property
+    def share(self) -> float | None:
+        """The share of the curve's length that is in the air; None for a curve without length."""
+        return self.share_of(np.ones_like(self.places)) if self.weight.any() else None
+
+    def share_of(self, places: Mask) -> float:
+        """Return the share of the curve's length that is in the air at some of the places (q,)."""
+        return float(self.weight[self.places & places].sum())
 
 
-def in_the_air(curve: CurveGraph, samples: CurveSamples, cloud: Points, spacings: Numbers | None = None) -> Air:
+def in_the_air(
+    curve: CurveGraph,
+    samples: CurveSamples,
+    cloud: Points,
+    spacings: Numbers | None = None,
+    half: Numbers | None = None,
+) -> Air:
     """Tell which places on a curve are in the air.
 
     They have no point of the cloud within 3 spacings, and are not between
@@ -69,6 +84,9 @@ def in_the_air(curve: CurveGraph, samples: CurveSamples, cloud: Points, spacings
         Distinct points, in any unit.
     spacings : (n,) float64, optional
         How far the points are apart about each, where that is known already.
+    half : (q,) float64, optional
+        Half the thickness of the slab at each place where it is more than 2 spacings; a slab that is thicker than a
+        hole in the scan is long sees the points before and behind it.
 
     Returns
     -------
@@ -94,9 +112,10 @@ def in_the_air(curve: CurveGraph, samples: CurveSamples, cloud: Points, spacings
     ends = curve.nodes[curve.edges[samples.edges]]
     along = np.where(samples.directed[:, None], samples.directions, unit(ends[:, 1] - ends[:, 0]))
     along[~along.any(axis=1)] = ANY_WAY
+    slab = np.maximum(HALF_SLAB * spacing, 0.0 if half is None else half)
     for rows in np.array_split(np.flatnonzero(air), -(-int(air.sum()) // BLOCK) or 1):
-        air[rows] = widest_gaps(samples.points[rows], along[rows], HALF_SLAB * spacing[rows], cloud) >= SURROUNDED
-    return Air(air, np.asarray(distance), length_share(curve, samples, air))
+        air[rows] = widest_gaps(samples.points[rows], along[rows], slab[rows], cloud) >= SURROUNDED
+    return Air(air, np.asarray(distance), length_weights(curve, samples))
 
 
 def widest_gaps(places: Points, directions: Points, half: Numbers, cloud: Points) -> Numbers:
@@ -133,9 +152,9 @@ def widest_gaps(places: Points, directions: Points, half: Numbers, cloud: Points
     return np.asarray(np.minimum(np.maximum(inner, whole), 2 * np.pi))
 
 
-def length_share(curve: CurveGraph, samples: CurveSamples, chosen: Mask) -> float | None:
-    """Return the share of a curve's length that chosen places (q,) on it stand for; None without length."""
+def length_weights(curve: CurveGraph, samples: CurveSamples) -> Numbers:
+    """Return (q,) the share of a curve's length that each place on it stands for; zeros for a curve without length."""
     each = np.bincount(samples.edges, minlength=len(curve.edges))
-    weight = (curve.lengths / np.maximum(each, 1))[samples.edges]
-    total = float(weight.sum())
-    return float(weight[chosen].sum()) / total if total > 0 else None
+    length = (curve.lengths / np.maximum(each, 1))[samples.edges]
+    total = float(length.sum())
+    return length / total if total > 0 else np.zeros_like(length)

@@ -31,8 +31,8 @@ def to_json(s: Skeleton) -> bytes:
     """Return one JSON document.
 
     Of every node its place, radius, radius_source and regime, of every edge its
-    nodes and whether it was bridged; branches, the node of every point, counts
-    and warnings.
+    nodes and whether it was bridged; branches, the node of every point, counts,
+    warnings and notes.
     """
     document = {
         "tiskel": version(),
@@ -45,7 +45,7 @@ def to_json(s: Skeleton) -> bytes:
         "branches": [branch.tolist() for branch in s.branches],
         "node_of_point": s.node_of_point.tolist(),
         "graph": s.counts(),
-        "warnings": list(s.warnings),
+        **s.doubts(),
     }
     return (json.dumps(document, allow_nan=False) + "\n").encode()
 

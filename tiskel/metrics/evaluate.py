@@ -10,7 +10,7 @@ from tiskel.errors import TiskelError
 from tiskel.geometry.air import in_the_air
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.graph import CurveGraph
-from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
+from tiskel.geometry.oriented import OrientedCloud, oriented_cloud, places_inside
 from tiskel.geometry.representatives import few_places
 from tiskel.metrics import smoothness
 from tiskel.metrics.barcode import Barcode, barcode
@@ -152,7 +152,7 @@ def _measures(
     with watch.measure("boundedness"):
         bounded = boundedness(places, subject.cloud)
     with watch.measure("inside"):
-        inside = surface.contains(places) if surface.trusted else None
+        inside = places_inside(surface, places)
     of_points, of_curve = slice(0, len(subject.points)), slice(len(subject.points), len(places))
     surrounded = [(bounded.take(rows), None if inside is None else inside[rows]) for rows in (of_points, of_curve)]
     return (

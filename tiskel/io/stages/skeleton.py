@@ -8,7 +8,8 @@ where it follows points; trimesh reads no edges of more than two properties);
 ``branch``, how many nodes each has, and ``branch_node``, these nodes one branch
 after the other (trimesh gives up on lists of different lengths); ``contracted``, the contracted points with origin,
 row in ``cloud`` and node; ``cloud``, every finite input point with its row in the
-input and its node. Format 1, which is still read, does not say what was bridged,
+input and its node. Comments hold JSON: source, params, warnings and notes (see
+:class:`tiskel.CurveWarning`; plain texts in older files). Format 1, which is still read, does not say what was bridged,
 and some files of format 2 do not say the regime.
 """
 
@@ -20,6 +21,7 @@ import numpy.typing as npt
 
 from tiskel.arrays import Edges, Indices, Mask
 from tiskel.errors import TiskelError
+from tiskel.geometry.doubt import warning_from
 from tiskel.io import ply
 from tiskel.io.stages.contraction import ORIGIN
 from tiskel.io.streams import Bytes, mapped, write_bytes
@@ -75,7 +77,7 @@ def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
         ply.element("contracted", contracted),
         ply.element("cloud", cloud),
     ]
-    facts: dict[str, Any] = {"source": source or {}, "warnings": list(s.warnings)}
+    facts: dict[str, Any] = {"source": source or {}, **s.doubts()}
     if s.params is not None:
         facts["params"] = ply.plain(s.params)
     return ply.dump(elements, STAGE, facts)
@@ -144,7 +146,8 @@ def parse_skeleton(data: Bytes, name: str) -> Skeleton:
             contracted=ply.points_of(contracted),
             origin=ply.points_of(contracted, ORIGIN),
             rows=np.array(contracted["row"], np.int32),
-            warnings=tuple(facts.get("warnings", ())),
+            warnings=tuple(map(warning_from, facts.get("warnings", ()))),
+            notes=tuple(map(warning_from, facts.get("notes", ()))),
             params=known_settings(params) if "method" in params else None,
         )
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
