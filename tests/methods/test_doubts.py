@@ -104,6 +104,28 @@ def test_a_limb_without_a_branch_is_told_and_where() -> None:
     assert np.linalg.norm(np.array(doubt.places[0]) - limb) < 0.5 * np.linalg.norm(limb)
 
 
+def cut(j: Judged, low: float, high: float) -> Judged:
+    """Return the same without cloud and curve between two heights along z, where both are."""
+    inside = (j.graph.nodes[:, 2] > low) & (j.graph.nodes[:, 2] < high)
+    name = np.cumsum(~inside) - 1
+    links = j.graph.edges[~inside[j.graph.edges].any(axis=1)]
+    graph = CurveGraph(j.graph.nodes[~inside], name[links].astype(np.int32), j.graph.radii[~inside])
+    return judged(j.points[(j.points[:, 2] < low) | (j.points[:, 2] > high)], graph)
+
+
+def test_ends_at_a_hole_that_face_each_other_are_told_and_the_mouths_of_tubes_are_not() -> None:
+    capsule = true("capsule")
+    assert "open-ends" not in codes(cut(capsule, 0.3, 9))  # a mouth that faces nothing
+    (doubt,) = [doubt for doubt in doubts_of(cut(capsule, -0.3, 0.3)) if doubt.code == "open-ends"]
+    assert doubt.text.startswith("2 ends")
+    np.testing.assert_allclose(np.abs(np.array(doubt.places)[:, 2]), 0.3, atol=0.1)
+    two = np.concatenate([capsule.points, capsule.points + [0, 0, 2.4]])
+    nodes = np.concatenate([capsule.graph.nodes, capsule.graph.nodes + [0, 0, 2.4]])
+    edges = np.concatenate([capsule.graph.edges, capsule.graph.edges + len(capsule.graph.nodes)])
+    pair = CurveGraph(nodes, edges, np.tile(capsule.graph.radii, 2))
+    assert "open-ends" not in codes(judged(two, pair))  # two bodies, each with its caps
+
+
 def leaf(count: int = 3000) -> Points:
     generator = np.random.default_rng(1)
     return np.stack([generator.normal(0, 1e-3, count), *generator.uniform(-1, 1, (2, count)) * [[0.4], [2]]], axis=1)

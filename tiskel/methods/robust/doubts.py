@@ -6,6 +6,7 @@ code            severity what
 ``in-air``      warning  curve neither at the points nor between them, bridges aside
 ``outside``     warning  curve outside the body, as ``tiskel metrics`` counts it
 ``loops``       warning  the body has more or fewer handles than the curve has loops
+``open-ends``   warning  ends without a cap that look at another part of the curve: a gap left open
 ``far``         warning  points far from the curve: a part without a branch
 ``flat``        warning  cones in a body whose normals hardly turn; a note where a sheet was told
 ``short``       warning  the body is hardly longer than thick
@@ -35,6 +36,7 @@ from tiskel.geometry.regime import Regime
 from tiskel.geometry.representatives import few_places
 from tiskel.methods.robust import levels
 from tiskel.methods.robust.judged import Judged
+from tiskel.methods.robust.openings import open_ends_in_sight
 from tiskel.methods.robust.turning import flat_points, one_sided_nodes
 
 
@@ -120,6 +122,14 @@ def _cyclic(graph: CurveGraph) -> Mask:
     return left
 
 
+def _open_ends(j: Judged) -> CurveWarning | None:
+    ends = open_ends_in_sight(j)
+    if len(ends) == 0:
+        return None
+    text = f"{len(ends)} ends stop at a hole in the scan and face another part of the curve: they may belong together"
+    return _doubt("open-ends", text, len(ends) / j.graph.ends, j.graph.nodes[ends])
+
+
 def _far(j: Judged) -> CurveWarning | None:
     """Find points beyond what the curve can stand for, about the nearest place on it and about their own node."""
     graph, kept = j.graph, ~j.left_out
@@ -203,5 +213,5 @@ def _thin(j: Judged) -> CurveWarning | None:
 
 
 CHECKS: tuple[Callable[[Judged], CurveWarning | None], ...] = (
-    _in_air, _outside, _loops, _far, _flat, _short, _bridged, _small, _one_sided, _thin,
+    _in_air, _outside, _loops, _open_ends, _far, _flat, _short, _bridged, _small, _one_sided, _thin,
 )  # fmt: skip
