@@ -19,7 +19,7 @@ from tiskel.methods import robust
 PARAMS = "params"  # stands for the module of a setting
 AT_MOST_ONE = {
     "branches.FARTHEST", "branches.TIP_SHARE", "branches.AHEAD", "bridges.FACING", "bridges.FACING_SIDE",
-    "checks.OUTSIDE_SHARE", "checks.FLAT_SHARE", "checks.SPARSE_SHARE", "cycles.ALONG", "cycles.SHARE_INSIDE",
+    "levels.FLAT_SHARE", "levels.MOSTLY", "cycles.ALONG", "cycles.SHARE_INSIDE",
     "cycles.FRAGMENT", "fronts.ACROSS", "network.ALONG_NORMALS", "params.least_part", "__init__.CLEARLY",
 }  # fmt: skip
 

@@ -56,7 +56,7 @@ def arrays_of(c: Contraction, s: Skeleton) -> Iterator[bytes]:
         yield np.ascontiguousarray(array).tobytes()
     for array in (s.nodes, s.edges, s.radius, s.node_of_point, s.contracted, *s.branches):
         yield np.ascontiguousarray(array).tobytes()
-    yield "\n".join((*c.warnings, *s.warnings, c.status.value)).encode()
+    yield "\n".join((*c.warnings, *map(str, s.warnings), c.status.value)).encode()
 
 
 def rows() -> Iterator[dict[str, str]]:

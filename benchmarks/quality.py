@@ -136,7 +136,7 @@ def scored(name: str, cloud: np.ndarray, shape: ConeGraph | None, setting: str, 
     if shape is not None:
         found = agreement(s, shape)
         row |= {**found.as_dict(), "right": int(found.topology_right)}
-    return row | {"seconds": round(seconds, 2), "warnings": "; ".join(s.warnings)}
+    return row | {"seconds": round(seconds, 2), "warnings": "; ".join(map(str, s.warnings))}
 
 
 def rows_of(setting: str, methods: list[str]) -> list[Row]:

@@ -118,7 +118,7 @@ def compared(cloud: Cloud, other: Skeleton | None) -> Row:
     row: Row = {
         "curves": any(differ(a, b, equal) for a, b in pairs),
         "points": differ(one.contracted, other.contracted, equal),
-        "warnings": one.warnings != other.warnings,
+        "warnings": [w.code for w in one.warnings] != [w.code for w in other.warnings],
         "topology": (one.components, one.loops) != (other.components, other.loops),
         "ends": one.ends != other.ends,
     }

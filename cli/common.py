@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tiskel.cli import method_options, options, surface_options
-from tiskel.cli.console import begin
+from tiskel.cli.console import begin, end
 from tiskel.cli.options import CONDITIONING
 
 Command = Callable[..., None]
@@ -41,11 +41,12 @@ ROLLING: dict[str, tuple[Any, Any]] = {
 
 
 def common(command: Command) -> Command:
-    """Add --threads, --quiet, --verbose, --strict and --log, and act on them before the command runs."""
+    """Add --threads, --quiet, --verbose, --strict and --log, and act on them before and after the command runs."""
 
     def run(**arguments: Any) -> None:
         begin(**{name: arguments.pop(name) for name in COMMON})
         command(**arguments)
+        end()
 
     return _with_options(command, run, COMMON, drop=())
 

@@ -3,7 +3,7 @@
 import functools
 import logging
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,7 @@ class Session:
     quiet: bool = False
     verbose: bool = False
     strict: bool = False
+    warned: list[str] = field(default_factory=list)
 
 
 session = Session()
@@ -35,6 +36,7 @@ def begin(*, threads: int | None, quiet: bool, verbose: bool, strict: bool, log_
     import os
 
     session.quiet, session.verbose, session.strict = quiet, verbose, strict
+    session.warned.clear()
     if threads is not None:
         os.environ["TISKEL_NUM_THREADS"] = str(threads)
     if log_file is not None:
@@ -64,13 +66,20 @@ def say(message: str) -> None:
 
 
 def warn(messages: tuple[str, ...]) -> None:
-    """Print warnings; with --strict the first of them ends the run."""
+    """Print warnings, and keep them in mind for --strict."""
     for message in messages:
-        if session.strict:
-            raise TiskelError(f"{message} (an error because of --strict)")
+        session.warned.append(message)
         log.warning(message)
         if not session.quiet:
             errors().print(f"warning: {message}", markup=False)
+
+
+def end() -> None:
+    """Raise TiskelError with --strict where there was a warning; what the command made is written by now."""
+    if session.strict and session.warned:
+        first, *others = session.warned
+        more = f" and {len(others)} more" if others else ""
+        raise TiskelError(f"{first} (an error because of --strict{more}; what was made is written)")
 
 
 def tell(messages: Messages) -> None:

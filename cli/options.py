@@ -35,7 +35,12 @@ Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No messages.", rich_
 Verbose = Annotated[
     bool, typer.Option("--verbose", "-v", help="More messages, and tracebacks.", rich_help_panel="Common")
 ]
-Strict = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.", rich_help_panel="Common")]
+Strict = Annotated[
+    bool,
+    typer.Option(
+        "--strict", help="Exit with 1 where there was a warning, with everything written.", rich_help_panel="Common"
+    ),
+]
 LogFile = Annotated[
     Path | None,
     typer.Option(
@@ -86,6 +91,14 @@ NoiseKindName = Annotated[
 Seed = Annotated[int, typer.Option(min=0, help="Of everything random.", rich_help_panel="Input")]
 
 AsJson = Annotated[bool, typer.Option("--json", help="JSON on a terminal too.", rich_help_panel="Output")]
+Summary = Annotated[
+    bool,
+    typer.Option(
+        "--json",
+        help="Also counts, warnings and notes, with codes, shares and places, as JSON on standard output.",
+        rich_help_panel="Output",
+    ),
+]
 Plot = Annotated[
     Path | None,
     typer.Option(

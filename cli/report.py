@@ -31,7 +31,7 @@ def report(name: str, result: "PipelineResult") -> str:
         (i, f"{t.contraction_weight:.4g}", f"{t.ring_ratio:.4f}", "" if t.score is None else f"{t.score:.5f}", t.points)
         for i, t in enumerate(c.steps, 1)
     ]
-    lines = (*c.warnings, *s.warnings, *q.warnings)
+    lines = (*c.warnings, *map(str, s.warnings), *(f"note: {note}" for note in s.notes), *q.warnings)
     warnings = "".join(f"<li>{html.escape(line)}</li>" for line in lines)
     table = "".join(_row(pair) for pair in facts.items())
     history = _row(head, "th") + "".join(_row(step) for step in steps)

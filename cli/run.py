@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
@@ -35,6 +36,7 @@ def run(
     weights: o.Weights = None,
     history: o.History = False,
     branch: so.Branch = so.SURFACE.branch,
+    as_json: o.Summary = False,
     *,
     conditioning: Mapping[str, Any],
     contracting: Mapping[str, Any],
@@ -59,7 +61,8 @@ def run(
     from tiskel import run_pipeline
     from tiskel.cli.run_files import files_of, pictures_of
 
-    result = run_pipeline(cloud.points, params, stages.weights_of(cloud, weights), _tell)
+    parts: list[Finished] = []
+    result = run_pipeline(cloud.points, params, stages.weights_of(cloud, weights), lambda done: _tell(done, parts))
     drawing = time.perf_counter()
     pictures = pictures_of(result, cloud)
     seconds = {"read": read - start, **result.seconds, "pictures": time.perf_counter() - drawing}
@@ -68,9 +71,13 @@ def run(
     for name, make in files.items():
         stages.write(output / name, make)
     console.say(f"wrote {', '.join(files)} to {output}")
+    if as_json:
+        told = [("read", messages.warned(cloud.warnings)), *((done.part, done.messages) for done in parts)]
+        typer.echo(json.dumps(messages.document_of_run(cloud.name, result.skeleton, told), allow_nan=False))
 
 
-def _tell(finished: "Finished") -> None:
+def _tell(finished: "Finished", parts: "list[Finished]") -> None:
+    parts.append(finished)
     console.tell(finished.messages)
     if finished.part == "contract":
         stages.tell_steps(finished.result)

@@ -1,5 +1,6 @@
 """``tiskel skeleton``."""
 
+import json
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, get_args
 
@@ -32,13 +33,15 @@ def skeleton(
     source: o.Source,
     output: o.Output = None,
     format_name: FormatName = None,
+    as_json: o.Summary = False,
     *,
     curving: Mapping[str, Any],
 ) -> None:
     """Turn a contracted cloud into a curve skeleton.
 
     Reads contraction.ply, writes skeleton.ply, which Open3D, trimesh and plyfile read as a line set; CloudCompare and
-    MeshLab show lines from OBJ: `tiskel contract scan.ply | tiskel skeleton - -o curve.obj`
+    MeshLab show lines from OBJ: `tiskel contract scan.ply | tiskel skeleton - -o curve.obj`. What may be wrong with
+    the curve: `tiskel skeleton c.ply -o curve.ply --json | jq .warnings`
     """
     chosen = format_of(format_name, str(output or ""))
     params = SkeletonParams(**curving)
@@ -49,14 +52,18 @@ def skeleton(
     from tiskel.io.stages.skeleton import dump_skeleton
     from tiskel.io.streams import read_bytes
 
+    target = stages.output_path(output, source, f"skeleton.{chosen}")
+    if as_json and str(target) == "-":
+        raise TiskelError("--json and the skeleton would both go to standard output; name a file for it with -o")
     data = read_bytes(source)
     made = extract_skeleton(parse_contraction(data, str(source)), params)
     console.tell(messages.of_skeleton(made))
-    target = stages.output_path(output, source, f"skeleton.{chosen}")
     if chosen == "ply":
         stages.write(target, lambda: dump_skeleton(made, source_of(data, "contraction", str(source))))
     else:
         stages.write(target, lambda: EXPORTS[chosen](made))
+    if as_json:
+        typer.echo(json.dumps(messages.document_of_skeleton(source.name, made), allow_nan=False))
 
 
 def format_of(name: Format | None, output: str) -> Format:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tiskel.errors import TiskelError as TiskelError
     from tiskel.gallery.make import make_shape as make_shape
     from tiskel.gallery.make import shape_graph as shape_graph
+    from tiskel.geometry.doubt import CurveWarning as CurveWarning
     from tiskel.geometry.graph import CurveGraph as CurveGraph
     from tiskel.geometry.radius import RadiusSource as RadiusSource
     from tiskel.geometry.regime import Regime as Regime
@@ -73,6 +74,7 @@ _HOME = {
     "ContractionParams": "params",
     "CurveGraph": "geometry.graph",
     "Curve": "io.curves",
+    "CurveWarning": "geometry.doubt",
     "FittedSurface": "slicing.fitted",
     "GlsParams": "params",
     "Inputs": "rolling.inputs",

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tiskel.contraction import Contraction
@@ -28,9 +28,9 @@ def said(lines: Iterable[str]) -> Messages:
     return tuple(map(Message, lines))
 
 
-def warned(lines: Iterable[str]) -> Messages:
+def warned(lines: Iterable[object]) -> Messages:
     """Return warnings, each line once."""
-    return tuple(Message(line, warning=True) for line in dict.fromkeys(lines))
+    return tuple(Message(line, warning=True) for line in dict.fromkeys(map(str, lines)))
 
 
 def of_contraction(c: "Contraction") -> Messages:
@@ -43,12 +43,28 @@ def of_contraction(c: "Contraction") -> Messages:
 
 
 def of_skeleton(s: "Skeleton") -> Messages:
-    """Return the warnings, then the counts of the graph."""
+    """Return the warnings, then the notes, then the counts of the graph."""
     line = (
         f"{len(s.nodes)} nodes, {len(s.edges)} edges: components {s.components}, loops {s.loops}, ends {s.ends}, "
         f"joints {s.junctions}, branches {len(s.branches)}, length {s.length:.6g}"
     )
-    return (*warned(s.warnings), Message(line))
+    return (*warned(s.warnings), *said(f"note: {note}" for note in s.notes), Message(line))
+
+
+def document_of_skeleton(name: str, s: "Skeleton") -> dict[str, Any]:
+    """Return what a script wants to know of a skeleton as JSON values: what it was made of, counts, warnings, notes."""
+    return {"file": name, "graph": {"nodes": len(s.nodes), "edges": len(s.edges), **s.counts()}, **s.doubts()}
+
+
+def document_of_run(name: str, s: "Skeleton", parts: "Iterable[tuple[str, Messages]]") -> dict[str, Any]:
+    """Return the same of a whole run: warnings of other parts (name, messages) have the part's name as their code."""
+    from tiskel.geometry.doubt import CurveWarning
+
+    document = document_of_skeleton(name, s)
+    for part, lines in parts:
+        if part != "skeleton":
+            document["warnings"] += [CurveWarning(part, line.text).as_dict() for line in lines if line.warning]
+    return document
 
 
 def of_stability(stability: "Stability") -> Messages:

@@ -1,7 +1,7 @@
 """The stage ``skeleton``: a contracted cloud in, a curve skeleton out."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,7 +11,11 @@ if TYPE_CHECKING:
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
+from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.labels import labels
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 from tiskel.methods import METHODS
 from tiskel.params import ContractionParams, SkeletonParams
 
@@ -37,8 +41,10 @@ class Skeleton(CurveGraph):
         Where these came from.
     rows : (m,) int32
         Their rows in the cloud.
-    warnings : tuple of str
-        Where the curve may be wrong, and why.
+    warnings : tuple of CurveWarning
+        Where the curve may be wrong, and why; ``str()`` of each is a line for a reader.
+    notes : tuple of CurveWarning
+        What to know of a curve that may well be right: bridged gaps, radii that are bounds, sides not seen.
     params : ContractionParams or None
         The settings of the method that made it; None where no method did.
 
@@ -56,13 +62,18 @@ class Skeleton(CurveGraph):
     contracted: Points
     origin: Points
     rows: Indices
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[CurveWarning, ...] = ()
+    notes: tuple[CurveWarning, ...] = ()
     params: ContractionParams | None = field(default=None, repr=False)
 
     @property
     def radius(self) -> Numbers:
         """(v,) the radii, by the name that files and tables have for them."""
         return self.radii
+
+    def doubts(self) -> dict[str, list[dict[str, Any]]]:
+        """Return warnings and notes by these names, as plain JSON values; see :meth:`tiskel.CurveWarning.as_dict`."""
+        return {"warnings": [w.as_dict() for w in self.warnings], "notes": [n.as_dict() for n in self.notes]}
 
     def branch_of_node(self) -> Indices:
         """Return (v,) the branch of each node, -1 for junctions, which belong to several."""
@@ -73,12 +84,19 @@ class Skeleton(CurveGraph):
         return branch
 
     def to_networkx(self) -> "networkx.Graph":
-        """Return a networkx.Graph with node attributes x, y, z, radius and edge attributes length and bridged."""
+        """Return a networkx.Graph.
+
+        Nodes have x, y, z, radius, radius_source ("measured", "bounded",
+        "modelled", "unknown") and regime ("tube", "sheet", "wire",
+        "unknown"), edges length and bridged.
+        """
         import networkx
 
         network = networkx.Graph()
-        for i, ((x, y, z), radius) in enumerate(zip(self.nodes.tolist(), self.radii.tolist(), strict=True)):
-            network.add_node(i, x=x, y=y, z=z, radius=radius)
+        sources, regimes = labels(RadiusSource, self.radius_sources), labels(Regime, self.regimes)
+        said = zip(self.nodes.tolist(), self.radii.tolist(), sources, regimes, strict=True)
+        for i, ((x, y, z), radius, source, regime) in enumerate(said):
+            network.add_node(i, x=x, y=y, z=z, radius=radius, radius_source=source, regime=regime)
         measured = zip(self.edges.tolist(), self.lengths.tolist(), self.bridged.tolist(), strict=True)
         for (a, b), length, bridged in measured:
             network.add_edge(a, b, length=length, bridged=bridged)
@@ -124,6 +142,7 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
     settings = (params or SkeletonParams()).over(c.params)
     trace, frame = c.as_trace()
     made = METHODS[settings.method].curve(trace, settings.placed(frame.place))
+    doubts = [doubt.moved(frame.undo) for doubt in made.warnings]
     return Skeleton(
         nodes=frame.undo(made.graph.nodes),
         edges=made.graph.edges,
@@ -137,6 +156,7 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
         contracted=frame.undo(made.contracted),
         origin=c.origin,
         rows=c.rows,
-        warnings=made.warnings,
+        warnings=tuple(doubt for doubt in doubts if doubt.severity == "warning"),
+        notes=tuple(doubt for doubt in doubts if doubt.severity == "note"),
         params=settings,
     )

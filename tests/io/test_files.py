@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import networkx
@@ -83,6 +84,7 @@ def test_a_skeleton_comes_back_whole(skeleton: Skeleton, tmp_path: Path) -> None
         "radii",
         "bridged",
         "radius_sources",
+        "regimes",
         "node_of_point",
         "cloud",
         "input_rows",
@@ -314,3 +316,48 @@ def test_graphml_and_json_hold_the_graph() -> None:
     document = json.loads(to_json(LOOPED))
     assert document["graph"]["loops"] == 1
     np.testing.assert_array_equal(document["edges"], LOOPED.edges)
+
+
+def mixed(s: Skeleton) -> Skeleton:
+    """Return the skeleton with every regime, every worth of a radius, and a bridge."""
+    count = len(s.nodes)
+    sources, regimes = (np.arange(count) % 4).astype(np.uint8), (np.arange(count) // 2 % 4).astype(np.uint8)
+    return replace(s, bridged=np.arange(len(s.edges)) == 1, radius_sources=sources, regimes=regimes)
+
+
+MIXED = mixed(LOOPED)
+SOURCES = [("unknown", "measured", "bounded", "modelled")[i] for i in MIXED.radius_sources.tolist()]
+REGIMES = [("unknown", "tube", "sheet", "wire")[i] for i in MIXED.regimes.tolist()]
+
+
+def test_a_stage_file_gives_regimes_sources_and_bridges_back(tmp_path: Path) -> None:
+    write_skeleton(tmp_path / "s.ply", MIXED)
+    back = read_skeleton(tmp_path / "s.ply")
+    for name in ("bridged", "radius_sources", "regimes"):
+        np.testing.assert_array_equal(getattr(back, name), getattr(MIXED, name))
+
+
+def test_json_and_graphml_name_regimes_sources_and_bridges() -> None:
+    document = json.loads(to_json(MIXED))
+    assert (document["radius_source"], document["regime"]) == (SOURCES, REGIMES)
+    assert document["bridged"] == MIXED.bridged.tolist()
+    network = networkx.read_graphml(io.BytesIO(to_graphml(MIXED)))
+    assert [network.nodes[str(i)]["radius_source"] for i in range(len(SOURCES))] == SOURCES
+    assert [network.nodes[str(i)]["regime"] for i in range(len(REGIMES))] == REGIMES
+    assert [network.edges[str(a), str(b)]["bridged"] for a, b in MIXED.edges.tolist()] == MIXED.bridged.tolist()
+
+
+def test_swc_types_are_regimes_and_comments_say_bridges_and_sources() -> None:
+    rows = to_swc(MIXED).decode().splitlines()
+    data = [row.split() for row in rows if not row.startswith("#")]
+    place = {tuple(map(float, row[2:5])): int(row[0]) for row in data}
+    name = [place[tuple(node)] for node in MIXED.nodes.tolist()]
+    kinds = {"unknown": "0", "tube": "11", "sheet": "12", "wire": "13"}
+    assert [data[name[i] - 1][1] for i in range(len(name))] == [kinds[regime] for regime in REGIMES]
+    a, b = MIXED.edges[1].tolist()
+    assert f"# bridged {name[a]} {name[b]}" in rows
+    said: dict[int, str] = {}
+    for words in (row.split() for row in rows if row.startswith("# radius_source")):
+        for first, _, last in (ids.partition("-") for ids in words[3:]):
+            said |= dict.fromkeys(range(int(first), int(last or first) + 1), words[2])
+    assert [said[name[i]] for i in range(len(name))] == SOURCES

@@ -12,6 +12,7 @@ from plyfile import PlyData, PlyElement
 from tiskel import Contraction, ContractionParams, Skeleton, contract, extract_skeleton
 from tiskel.arrays import Points
 from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 from tiskel.io.stages.contraction import parse_contraction
 from tiskel.io.stages.skeleton import parse_skeleton
 
@@ -93,4 +94,5 @@ def test_skeletons_of_format_1_do_not_know_what_was_bridged(capsule: Points) -> 
     assert [branch.tolist() for branch in back.branches] == [branch.tolist() for branch in s.branches]
     assert not back.bridged.any()
     assert (back.radius_sources == RadiusSource.UNKNOWN).all()
+    assert (back.regimes == Regime.UNKNOWN).all()
     assert back.params is None

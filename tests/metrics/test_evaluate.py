@@ -60,6 +60,7 @@ KEYS = {
     "topology": {"bottleneck", "wasserstein", "bars", "threshold", "similar", "reasons"},
     "boundedness": {"points", "curve", "reasons"},
     "inside": {"points", "curve", "reasons"},
+    "air": {"curve", "places", "reasons"},
     "centredness": {"points", "curve", "points_raw", "reasons"},
     "smoothness": {"points", "curve", "reasons"},
     "loops": {"surface", "solid", "graph", "reasons"},
@@ -81,6 +82,7 @@ def test_keys_are_the_same_whatever_is_given() -> None:
 def test_the_middle_of_a_capsule_is_good() -> None:
     q = strict(evaluate(*shape()))
     assert q["boundedness"]["points"] == q["inside"]["points"] == q["inside"]["curve"] == 1
+    assert q["air"] == {"curve": 0, "places": [], "reasons": {}}
     assert q["settings"]["correspondence"] == "rows"
     assert q["graph"] == {"components": 1, "loops": 0, "ends": 2, "joints": 0, "length": pytest.approx(1.4)}
 
@@ -91,6 +93,11 @@ def test_a_skeleton_outside_its_cloud_is_bad_and_measured() -> None:
     assert q["boundedness"]["points"] == q["boundedness"]["curve"] == 0
     assert q["inside"]["points"] == q["inside"]["curve"] == 0
     assert q["centredness"]["points"] == q["centredness"]["curve"] == 0
+    assert q["air"]["curve"] == 1
+    places = np.array(q["air"]["places"])  # in the units of the input
+    assert len(places) == 3
+    np.testing.assert_allclose(places[:, :2], np.tile([5, 0], (3, 1)), atol=1e-9)
+    assert np.ptp(places[:, 2]) > 1
 
 
 def test_unbounded_points_have_no_centredness_however_their_originals_lie() -> None:

@@ -127,6 +127,24 @@ def oriented_cloud(points: Points, targets: Points, seed: int = 0) -> OrientedCl
     return max(made, key=lambda surface: surface.consistency)
 
 
+def places_inside(surface: OrientedCloud, places: Points) -> Mask | None:
+    """Tell which places are inside a surface, for measures and warnings alike.
+
+    Parameters
+    ----------
+    surface : OrientedCloud
+        With its ``consistency`` checked.
+    places : (m, 3) float64
+        In the unit of its points.
+
+    Returns
+    -------
+    (m,) bool or None
+        None where the normals do not agree on an inside: nothing can be said then.
+    """
+    return surface.contains(places) if surface.trusted else None
+
+
 def checked(surface: OrientedCloud, seed: int) -> OrientedCloud:
     """Return the surface with the share of probed points that have an inside behind them and an outside before them.
 

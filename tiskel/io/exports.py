@@ -4,12 +4,20 @@ import io
 import json
 from collections import deque
 from collections.abc import Callable
+from itertools import groupby
 
 import numpy as np
 
+from tiskel.geometry.labels import labels
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.skeleton import Skeleton
 from tiskel.version import version
+
+# Types of SWC samples. 1 to 7 have meanings among neurons; what is read by most programs ends at 19.
+TYPES: dict[int, int] = {Regime.UNKNOWN: 0, Regime.TUBE: 11, Regime.SHEET: 12, Regime.WIRE: 13}
+TYPES_SAID = "# type " + ", ".join(f"{number} {Regime(regime).name.lower()}" for regime, number in TYPES.items())
 
 
 def to_obj(s: Skeleton) -> bytes:
@@ -20,16 +28,24 @@ def to_obj(s: Skeleton) -> bytes:
 
 
 def to_json(s: Skeleton) -> bytes:
-    """Return one JSON document with nodes, edges, radius, branches, the node of every point, counts and warnings."""
+    """Return one JSON document.
+
+    Of every node its place, radius, radius_source and regime, of every edge its
+    nodes and whether it was bridged; branches, the node of every point, counts,
+    warnings and notes.
+    """
     document = {
         "tiskel": version(),
         "nodes": s.nodes.tolist(),
         "edges": s.edges.tolist(),
+        "bridged": s.bridged.tolist(),
         "radius": s.radius.tolist(),
+        "radius_source": labels(RadiusSource, s.radius_sources),
+        "regime": labels(Regime, s.regimes),
         "branches": [branch.tolist() for branch in s.branches],
         "node_of_point": s.node_of_point.tolist(),
         "graph": s.counts(),
-        "warnings": list(s.warnings),
+        **s.doubts(),
     }
     return (json.dumps(document, allow_nan=False) + "\n").encode()
 
@@ -38,18 +54,35 @@ def to_swc(s: Skeleton) -> bytes:
     """Return SWC: continuous ids from 1, parents before children, breadth first from an end of each component.
 
     SWC holds trees only. The rule for loops: the edge that would close one is
-    left out of the tree and named in a comment line.
+    left out of the tree and named in a comment line. The type of a sample is
+    the regime of its node, see :data:`TYPES`. Comment lines name the two
+    samples of every edge over a gap (``# bridged 3 4``) and say what radii are
+    worth, by ranges of ids (``# radius_source bounded 1-7 12``).
     """
     order, parent = spanning_forest(s)
     name = {node: i + 1 for i, node in enumerate(order)}
     kept = {tuple(sorted((node, up))) for node, up in parent.items() if up >= 0}
-    lines = [f"# tiskel {version()} skeleton", "# id type x y z radius parent"]
+    lines = [f"# tiskel {version()} skeleton", "# id type x y z radius parent", TYPES_SAID]
     lines += [f"# loop {name[a]} {name[b]}" for a, b in s.edges.tolist() if (a, b) not in kept]
+    lines += [f"# bridged {name[a]} {name[b]}" for a, b in s.edges[s.bridged].tolist()]
+    lines += _sources(labels(RadiusSource, s.radius_sources[order]))
     for node in order:
         x, y, z = s.nodes[node].tolist()
         up = name[parent[node]] if parent[node] >= 0 else -1
-        lines.append(f"{name[node]} 0 {x!r} {y!r} {z!r} {float(s.radius[node])!r} {up}")
+        kind = TYPES.get(int(s.regimes[node]), 0)
+        lines.append(f"{name[node]} {kind} {x!r} {y!r} {z!r} {float(s.radius[node])!r} {up}")
     return ("\n".join(lines) + "\n").encode()
+
+
+def _sources(said: list[str]) -> list[str]:
+    """Return a comment line for each source of radii with the ids, from 1, of the samples that have it."""
+    runs: dict[str, list[str]] = {}
+    start = 1
+    for source, same in groupby(said):
+        end = start + len(list(same)) - 1
+        runs.setdefault(source, []).append(f"{start}-{end}" if end > start else f"{start}")
+        start = end + 1
+    return [f"# radius_source {source} {' '.join(ids)}" for source, ids in sorted(runs.items())]
 
 
 def spanning_forest(s: Skeleton) -> tuple[list[int], dict[int, int]]:
@@ -86,7 +119,7 @@ def spanning_forest(s: Skeleton) -> tuple[list[int], dict[int, int]]:
 
 
 def to_graphml(s: Skeleton) -> bytes:
-    """Return GraphML with node attributes x, y, z, radius and edge attribute length."""
+    """Return GraphML with the attributes of :meth:`tiskel.Skeleton.to_networkx`."""
     import networkx
 
     out = io.BytesIO()

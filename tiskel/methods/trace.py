@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tiskel.arrays import Indices, Points, resolved
+from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.rings import Rings
 
@@ -183,11 +184,11 @@ class MethodCurve:
         The node of every point of the cloud.
     contracted : (m, 3) float64
         The contracted points that the curve stands on, in the order of the trace's.
-    warnings : tuple of str
-        Where the curve may be wrong, and why.
+    warnings : tuple of CurveWarning
+        Where the curve may be wrong, and what to know of it, places in normalised coordinates.
     """
 
     graph: CurveGraph
     node_of_point: Indices
     contracted: Points
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[CurveWarning, ...] = ()

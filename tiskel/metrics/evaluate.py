@@ -7,15 +7,18 @@ import numpy.typing as npt
 
 from tiskel.arrays import Mask, Points
 from tiskel.errors import TiskelError
+from tiskel.geometry.air import in_the_air
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.graph import CurveGraph
-from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
+from tiskel.geometry.oriented import OrientedCloud, oriented_cloud, places_inside
+from tiskel.geometry.representatives import few_places
 from tiskel.metrics import smoothness
 from tiskel.metrics.barcode import Barcode, barcode
 from tiskel.metrics.boundedness import Boundedness, boundedness
 from tiskel.metrics.centredness import curve_centredness, point_centredness
 from tiskel.metrics.loops import Loops, count_loops
-from tiskel.metrics.result import CurveQuality, PointQuality, Quality
+from tiskel.metrics.places import CurveQuality, PointQuality
+from tiskel.metrics.result import Quality
 from tiskel.metrics.subject import Subject, make_subject
 from tiskel.metrics.topology import Topology, compare_topology
 from tiskel.params import MetricParams
@@ -37,8 +40,8 @@ def evaluate(
     The measures are those of the skeleton evaluation toolbox; where print and
     toolbox differ, the toolbox, which made the published tables, is followed,
     and :class:`tiskel.MetricParams` names the alternatives. Beyond it: a true
-    inside test, loops of surface, solid and curve, and reasons where there is
-    no value.
+    inside test, curve in the air (:mod:`tiskel.geometry.air`), loops of surface,
+    solid and curve, and reasons where there is no value.
 
     Parameters
     ----------
@@ -149,7 +152,7 @@ def _measures(
     with watch.measure("boundedness"):
         bounded = boundedness(places, subject.cloud)
     with watch.measure("inside"):
-        inside = surface.contains(places) if surface.trusted else None
+        inside = places_inside(surface, places)
     of_points, of_curve = slice(0, len(subject.points)), slice(len(subject.points), len(places))
     surrounded = [(bounded.take(rows), None if inside is None else inside[rows]) for rows in (of_points, of_curve)]
     return (
@@ -184,6 +187,8 @@ def _curve_quality(
 ) -> CurveQuality:
     curve, frame = subject.curve, subject.frame
     bounded, inside = surrounded
+    with watch.measure("air"):
+        air = in_the_air(curve, samples, subject.cloud)
     with watch.measure("centredness"):
         sections = curve_centredness(samples, subject.cloud, params)
     with watch.measure("smoothness"):
@@ -195,6 +200,9 @@ def _curve_quality(
         samples=replace(samples, points=frame.undo(samples.points)),
         boundedness=bounded,
         inside=inside,
+        in_air=air.places,
+        air_share=air.share,
+        air_where=frame.undo(few_places(samples.points[air.places], air.distance[air.places])),
         sections=sections,
         centredness=np.where(bounded.bounded, sections.centredness, 0.0),
         vertices=vertices,

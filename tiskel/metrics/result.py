@@ -5,11 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Edges, Indices, Mask, Numbers, Points
-from tiskel.geometry.curve import CurveSamples
-from tiskel.metrics.boundedness import COVERED, HULL, OUTSIDE, Boundedness
-from tiskel.metrics.centredness import Sections
 from tiskel.metrics.loops import Loops
+from tiskel.metrics.places import CurveQuality, PointQuality, bounded_share, inside_share
+from tiskel.metrics.shares import settled, share
 from tiskel.metrics.topology import Topology
 from tiskel.params import MetricParams
 
@@ -17,80 +15,7 @@ Document = dict[str, Any]
 
 NO_POINTS = "no skeletal points were given"
 NO_CURVE = "no curve with edges was given"
-
-
-@dataclass(frozen=True)
-class PointQuality:
-    """Measures of skeletal points, one row each; coordinates in the input's units.
-
-    Attributes
-    ----------
-    points : (m, 3) float64
-        The skeletal points.
-    originals : (m, 3) float64
-        The points of the cloud that they stand for.
-    boundedness : Boundedness
-        How each is surrounded by the cloud.
-    inside : (m,) bool or None
-        Whether each is inside the surface; None where the normals cannot be oriented.
-    centredness : (m,) float64
-        c from 0 to 1; 0 where unbounded.
-    raw_centredness : (m,) float64
-        c wherever the point is.
-    smoothness : (m,) float64
-        s from 0 to 1; NaN where a tangent is undefined.
-    """
-
-    points: Points
-    originals: Points
-    boundedness: Boundedness
-    inside: Mask | None
-    centredness: Numbers
-    raw_centredness: Numbers
-    smoothness: Numbers
-
-
-@dataclass(frozen=True)
-class CurveQuality:
-    """Measures of a curve at samples and at its vertices; coordinates in the input's units.
-
-    Attributes
-    ----------
-    nodes : (v, 3) float64
-        Where the nodes are.
-    edges : (e, 2) int32
-        The two nodes of every edge.
-    samples : CurveSamples
-        The q places on the curve that are measured.
-    boundedness : Boundedness
-        How each sample is surrounded by the cloud.
-    inside : (q,) bool or None
-        Whether each sample is inside the surface; None where the normals cannot be oriented.
-    sections : Sections
-        The section of the cloud across each sample.
-    centredness : (q,) float64
-        c from 0 to 1; 0 where unbounded, NaN where the section is invalid.
-    vertices : (d,) int32
-        The nodes with two neighbours.
-    smoothness : (d,) float64
-        s from 0 to 1 at each of these.
-    overall_smoothness : float or None
-        Mean of s weighted by length; None for a curve without length.
-    hairpins : int
-        Vertices where the curve turns back.
-    """
-
-    nodes: Points
-    edges: Edges
-    samples: CurveSamples
-    boundedness: Boundedness
-    inside: Mask | None
-    sections: Sections
-    centredness: Numbers
-    vertices: Indices
-    smoothness: Numbers
-    overall_smoothness: float | None
-    hairpins: int
+NO_LENGTH = "all of it is at one place"
 
 
 @dataclass(frozen=True)
@@ -155,6 +80,7 @@ class Quality:
             "topology": self._topology(),
             "boundedness": self._pair(bounded_share(p), bounded_share(c)),
             "inside": self._pair(inside_share(p), inside_share(c), self.unoriented),
+            "air": self._air(),
             "centredness": self._centredness(),
             "smoothness": self._smoothness(),
             "loops": {
@@ -180,6 +106,13 @@ class Quality:
                 reasons[name] = absent if measured is None else missing
         return {"points": points, "curve": curve, **more, "reasons": reasons}
 
+    def _air(self) -> Document:
+        """Return the share of the curve in the air, and a few places of it."""
+        c = self.curve
+        if c is None or c.air_share is None:
+            return {"curve": None, "places": [], "reasons": {"curve": NO_CURVE if c is None else NO_LENGTH}}
+        return {"curve": c.air_share, "places": c.air_where.tolist(), "reasons": {}}
+
     def _topology(self) -> Document:
         t = self.topology
         return {
@@ -201,19 +134,19 @@ class Quality:
         p, c = self.points, self.curve
         known = np.zeros(0) if p is None else p.smoothness[~np.isnan(p.smoothness)]
         points = float(known.mean()) if len(known) else None
-        return self._pair(points, None if c is None else c.overall_smoothness, "all of it is at one place")
+        return self._pair(points, None if c is None else c.overall_smoothness, NO_LENGTH)
 
     def counts(self) -> dict[str, int | float]:
         """Return how many places were measured, and how many were invalid or special."""
         counts: dict[str, int | float] = {"cloud": self.cloud_points, "oriented": round(self.orientation, 6)}
         counts |= {"loop_points": self.loops.points}
         if self.points is not None:
-            counts |= {f"points_{key}": value for key, value in _settled(self.points.boundedness).items()}
+            counts |= {f"points_{key}": value for key, value in settled(self.points.boundedness).items()}
             counts["points_without_tangent"] = int(np.isnan(self.points.smoothness).sum())
         if self.curve is not None:
             c = self.curve
             counts |= {"nodes": len(c.nodes), "edges": len(c.edges)}
-            counts |= {f"curve_{key}": value for key, value in _settled(c.boundedness).items()}
+            counts |= {f"curve_{key}": value for key, value in settled(c.boundedness).items()}
             counts |= {
                 "curve_valid_sections": int((~np.isnan(c.centredness)).sum()),
                 "curve_without_direction": int(c.sections.directionless.sum()),
@@ -222,28 +155,3 @@ class Quality:
                 "hairpins": c.hairpins,
             }
         return counts
-
-
-def share(mask: Mask | None) -> float | None:
-    """Return the share of True in a mask; None for no mask or an empty one."""
-    return None if mask is None or len(mask) == 0 else float(mask.mean())
-
-
-def bounded_share(measured: PointQuality | CurveQuality | None) -> float | None:
-    """Return the share of places that are bounded."""
-    return None if measured is None else share(measured.boundedness.bounded)
-
-
-def inside_share(measured: PointQuality | CurveQuality | None) -> float | None:
-    """Return the share of places that are inside, None where that is not known."""
-    return None if measured is None else share(measured.inside)
-
-
-def _settled(b: Boundedness) -> dict[str, int]:
-    return {
-        "measured": len(b),
-        "settled_by_coverage": int((b.settled_by == COVERED).sum()),
-        "settled_by_outside": int((b.settled_by == OUTSIDE).sum()),
-        "settled_by_hull": int((b.settled_by == HULL).sum()),
-        "at_a_cloud_point": int((b.coincident > 0).sum()),
-    }

@@ -7,9 +7,10 @@ import numpy as np
 from tiskel.arrays import Mask, Numbers, Points, Table
 from tiskel.io import ply
 from tiskel.metrics.boundedness import Boundedness
-from tiskel.metrics.result import CurveQuality, PointQuality, Quality
+from tiskel.metrics.places import CurveQuality, PointQuality
+from tiskel.metrics.result import Quality
 
-NAMES = ("of_curve", "beta", "bounded", "inside", "centredness", "smoothness")
+NAMES = ("of_curve", "beta", "bounded", "inside", "centredness", "smoothness", "in_air")
 
 
 def dump_heat(quality: Quality) -> bytes:
@@ -18,7 +19,7 @@ def dump_heat(quality: Quality) -> bytes:
     Its vertices are the skeletal points, then the samples and the vertices of the
     curve, in the input's units. Properties: of_curve (0 skeletal point, 1 sample
     of the curve, 2 vertex of the curve), beta, bounded, inside, centredness,
-    smoothness.
+    smoothness, in_air.
     """
     parts = [_points(quality.points), *_curve(quality.curve)]
     places = np.concatenate([part[0] for part in parts])
@@ -33,14 +34,14 @@ Part = tuple[Points, Table]
 def _points(p: PointQuality | None) -> Part:
     if p is None:
         return np.zeros((0, 3)), np.zeros((0, len(NAMES)))
-    return p.points, _columns(0, len(p.points), p.boundedness, p.inside, p.centredness, p.smoothness)
+    return p.points, _columns(0, len(p.points), p.boundedness, p.inside, p.centredness, p.smoothness, None)
 
 
 def _curve(c: CurveQuality | None) -> list[Part]:
     if c is None:
         return []
-    samples = _columns(1, len(c.samples.points), c.boundedness, c.inside, c.centredness, None)
-    vertices = _columns(2, len(c.vertices), None, None, None, c.smoothness)
+    samples = _columns(1, len(c.samples.points), c.boundedness, c.inside, c.centredness, None, c.in_air)
+    vertices = _columns(2, len(c.vertices), None, None, None, c.smoothness, None)
     return [(c.samples.points, samples), (c.nodes[c.vertices], vertices)]
 
 

@@ -1,14 +1,16 @@
 """The stage file ``skeleton.ply``, format 2: a line set that other tools read, and all that later stages need.
 
-Elements: ``vertex`` (x y z radius branch degree radius_source; branch is -1 for a
-junction, which belongs to several; radius_source is a number of
-:class:`tiskel.RadiusSource`) and ``edge`` (vertex1 vertex2); ``edge_source`` (bridged: 1
-where an edge was laid over a gap, 0 where it follows points; trimesh reads no edges
-of more than two properties); ``branch``, how many nodes each has, and
-``branch_node``, these nodes one branch after the other (trimesh gives up on lists
-of different lengths); ``contracted``, the contracted points with origin,
+Elements: ``vertex`` (x y z radius branch degree radius_source regime; branch is -1
+for a junction, which belongs to several; radius_source is a number of
+:class:`tiskel.RadiusSource`, regime of :class:`tiskel.Regime`) and ``edge``
+(vertex1 vertex2); ``edge_source`` (bridged: 1 where an edge was laid over a gap, 0
+where it follows points; trimesh reads no edges of more than two properties);
+``branch``, how many nodes each has, and ``branch_node``, these nodes one branch
+after the other (trimesh gives up on lists of different lengths); ``contracted``, the contracted points with origin,
 row in ``cloud`` and node; ``cloud``, every finite input point with its row in the
-input and its node. Format 1, which is still read, does not say what was bridged.
+input and its node. Comments hold JSON: source, params, warnings and notes (see
+:class:`tiskel.CurveWarning`; plain texts in older files). Format 1, which is still read, does not say what was bridged,
+and some files of format 2 do not say the regime.
 """
 
 from pathlib import Path
@@ -19,6 +21,7 @@ import numpy.typing as npt
 
 from tiskel.arrays import Edges, Indices, Mask
 from tiskel.errors import TiskelError
+from tiskel.geometry.doubt import warning_from
 from tiskel.io import ply
 from tiskel.io.stages.contraction import ORIGIN
 from tiskel.io.streams import Bytes, mapped, write_bytes
@@ -61,7 +64,7 @@ def write_skeleton(target: str | Path, skeleton: Skeleton, source: dict[str, str
 def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
     """Return the bytes of a stage file, the same for the same skeleton; see :func:`write_skeleton`."""
     vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radii, "branch": s.branch_of_node(), "degree": s.degrees}
-    vertex["radius_source"] = s.radius_sources
+    vertex |= {"radius_source": s.radius_sources, "regime": s.regimes}
     contracted: dict[str, Any] = {**ply.xyz(s.contracted), **ply.xyz(s.origin, ORIGIN), "row": s.rows}
     contracted["node"] = s.node_of_point[s.rows]
     cloud: dict[str, Any] = {**ply.xyz(s.cloud), "row": s.input_rows, "node": s.node_of_point}
@@ -74,7 +77,7 @@ def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
         ply.element("contracted", contracted),
         ply.element("cloud", cloud),
     ]
-    facts: dict[str, Any] = {"source": source or {}, "warnings": list(s.warnings)}
+    facts: dict[str, Any] = {"source": source or {}, **s.doubts()}
     if s.params is not None:
         facts["params"] = ply.plain(s.params)
     return ply.dump(elements, STAGE, facts)
@@ -135,24 +138,26 @@ def parse_skeleton(data: Bytes, name: str) -> Skeleton:
             edges=_edges(edge, len(vertex)),
             radii=np.array(vertex["radius"], np.float64),
             bridged=_bridged(file, len(edge)),
-            radius_sources=_sources(vertex),
+            radius_sources=_said(vertex, "radius_source"),
+            regimes=_said(vertex, "regime"),
             node_of_point=_nodes(cloud["node"], len(vertex)),
             cloud=ply.points_of(cloud),
             input_rows=np.array(cloud["row"], np.int32),
             contracted=ply.points_of(contracted),
             origin=ply.points_of(contracted, ORIGIN),
             rows=np.array(contracted["row"], np.int32),
-            warnings=tuple(facts.get("warnings", ())),
+            warnings=tuple(map(warning_from, facts.get("warnings", ()))),
+            notes=tuple(map(warning_from, facts.get("notes", ()))),
             params=known_settings(params) if "method" in params else None,
         )
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise TiskelError(f"{name} is a damaged skeleton file: {error}; run tiskel skeleton again") from None
 
 
-def _sources(vertex: Any) -> npt.NDArray[np.uint8]:
-    """Return what the radii are worth; unknown in a file of format 1."""
-    known = "radius_source" in (vertex.dtype.names or ())
-    return np.array(vertex["radius_source"], np.uint8) if known else np.zeros(len(vertex), np.uint8)
+def _said(vertex: Any, what: str) -> npt.NDArray[np.uint8]:
+    """Return what the vertices say of radii or regimes; 0, unknown, in an older file."""
+    known = what in (vertex.dtype.names or ())
+    return np.array(vertex[what], np.uint8) if known else np.zeros(len(vertex), np.uint8)
 
 
 def _bridged(file: Any, count: int) -> Mask:

@@ -11,6 +11,7 @@ import numpy as np
 
 from tiskel.arrays import Indices, Points, diagonal
 from tiskel.errors import TiskelError
+from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph, node_radii
 from tiskel.geometry.radius import RadiusSource
 from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edges
@@ -18,7 +19,9 @@ from tiskel.methods.laplacian.sampling import front_samples
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import LaplacianParams
 
-SINGLE = "the cloud contracted to a single node: it has no elongated part at this sampling radius"
+SINGLE = CurveWarning(
+    "short", "the cloud contracted to a single node: it has no elongated part at this sampling radius", share=1.0
+)
 
 
 def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:

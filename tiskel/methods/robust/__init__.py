@@ -11,6 +11,7 @@ docs/robust.md shows each step on a cloud. The algorithm:
    go, junctions move to where their branches meet, ends grow into the tips, gaps in the scan are bridged.
 6. The misfit says how far the curve is to be trusted: places outside the body, points far from the cones, loops
    unlike the handles of the solid. While there is much of it, further fronts from other ends are tried.
+7. What a user should doubt is drawn from the curve, the cloud and the solid alone (doubts.py), whatever made the curve.
 
 Sources: Reeb graphs of geodesic distance, Verroust and Lazarus 2000, Ge et al. 2011; axes from normals, Tagliasacchi
 et al. 2009 (ROSA); models of round cones, Thiery et al. 2013; winding numbers of clouds, Barill et al. 2018.
@@ -24,8 +25,10 @@ from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.solid import solid_of
-from tiskel.methods.robust.checks import Candidate, radius_sources, warnings_of
+from tiskel.methods.robust.checks import Candidate, radius_sources
+from tiskel.methods.robust.doubts import doubts_of
 from tiskel.methods.robust.fronts import contract_by_fronts, further_front
+from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
@@ -91,11 +94,22 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
     curve, fit = best.curve, best.fit
     node = curve.node_of_section[best.sections.section]
     node[fit.rows] = fit.nodes
-    lost = np.flatnonzero(node < 0)  # in small components
+    left_out = node < 0  # in small components
+    lost = np.flatnonzero(left_out)
     if len(lost):
         node[lost] = cKDTree(curve.nodes).query(network.points[lost])[1]
     contracted = trace.points.copy()
     contracted[fit.rows] = fit.places @ network.axes
     nodes = curve.nodes @ network.axes
     graph = CurveGraph(nodes, curve.edges, curve.radii, curve.bridged, radius_sources(best), regimes_of(best))
-    return MethodCurve(graph, node[trace.survivor_of()], contracted, warnings_of(best))
+    judged = Judged(
+        graph=graph,
+        points=trace.cloud[trace.rows],
+        normals=network.normals @ network.axes,
+        spacings=network.spacings,
+        node_of_point=node,
+        contracted=contracted,
+        left_out=left_out,
+        solid=best.solid,
+    )
+    return MethodCurve(graph, node[trace.survivor_of()], contracted, doubts_of(judged))

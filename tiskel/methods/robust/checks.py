@@ -1,4 +1,4 @@
-"""Whether a curve is right: the score that fronts compete by, and the warnings, from one table of levels."""
+"""Whether a curve is right: the score that fronts compete by, and what its radii are worth."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,19 +15,13 @@ from tiskel.methods.robust.fit import ConeFit
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
 
-# The table of levels. Found by trial on the shapes of the gallery, clean and degraded, and on seven scans. In brackets:
-# how many of the 14 curves, or of their warnings, of benchmarks/sensitivity.md change with 0.7 and 1.4 times the value.
+# Found by trial on the shapes of the gallery, clean and degraded, and on seven scans. In brackets:
+# how many of the 14 curves of benchmarks/sensitivity.md change with 0.7 and 1.4 times the value.
 PLACES = 200  # on the curve, where winding numbers are asked for [1, 0]
 OUTSIDE_SCORE = 0.4  # winding number below which a place counts against a curve [1, 0]
-OUTSIDE_WARNING = 0.25  # winding number below which a place is worth a warning [warnings 0, 1]
-OUTSIDE_SHARE = 0.02  # share of such places from which on there is a warning [0, 0; clouds are clearly on one side]
 THIN = 2.0  # spacings in a radius; thinner places say nothing of inside and outside [0, 1]
 FAR = 0.35  # local radii; points further from the cones count against a curve [1, 2]
-FLAT = 0.15  # ratio of how much normals spread both ways across the curve; flat below it [0, 0; for plates]
-FLAT_SHARE = 0.2  # share of points at such nodes from which on there is a warning [0, 0; for plates]
-SPARSE = 1.5  # spacings in a radius; thinner nodes have too few points [warnings 8, 10]
-SPARSE_SHARE = 0.05  # share of such nodes from which on there is a warning [0, 0; clouds are clearly on one side]
-SHORT = 1.0  # largest radii that a curve is long at least, to be one [0, 0; for balls]
+SPARSE = 1.5  # spacings in a radius; thinner nodes have too few points [0, 0; what radii are called]
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,58 +94,3 @@ def radius_sources(found: Candidate) -> npt.NDArray[np.uint8]:
     bridges = np.bincount(curve.edges[curve.bridged].ravel(), minlength=len(curve.nodes))
     sources[(bridges > 0) & (bridges == curve.degrees)] = RadiusSource.MODELLED
     return sources
-
-
-def warnings_of(found: Candidate) -> tuple[str, ...]:
-    """Return the warnings of a curve, each what, how much, and what to do."""
-    told = (_small(found), _sparse(found), _short(found), _flat(found), _gaps(found), *_body(found))
-    return tuple(warning for warning in told if warning)
-
-
-def _small(found: Candidate) -> str:
-    left_out = int((found.curve.node_of_section[found.sections.section] < 0).sum())
-    return f"{left_out} points in small separate parts were left out" if left_out else ""
-
-
-def _sparse(found: Candidate) -> str:
-    thin = float((found.curve.radii < SPARSE * found.network.spacing).mean())
-    few = f"{thin:.0%} of the nodes are thinner than {SPARSE} spacings of the points: too few points for the thickness"
-    return few if thin > SPARSE_SHARE else ""
-
-
-def _short(found: Candidate) -> str:
-    curve = found.curve
-    if len(curve.edges) and curve.length >= SHORT * curve.radii.max():
-        return ""
-    return "the body is hardly longer than it is thick: its curve skeleton says little about it"
-
-
-def _flat(found: Candidate) -> str:
-    """Find the nodes whose points' normals hardly turn about the curve, as those of a plate do not."""
-    node, normals = found.fit.nodes, found.network.normals[found.fit.rows]
-    scatter = np.zeros((len(found.curve.nodes), 3, 3))
-    np.add.at(scatter, node, normals[:, :, None] * normals[:, None, :])
-    _, across, most = np.linalg.eigvalsh(scatter).T
-    flat = (across < FLAT * most)[node]
-    share = float(flat.mean()) if len(flat) else 0.0
-    told = (
-        f"{share:.0%} of the points lie where the body is flat: it has no curve skeleton there and did not become thin"
-    )
-    return told if share > FLAT_SHARE else ""
-
-
-def _gaps(found: Candidate) -> str:
-    return f"{found.gaps} gaps in the scan were bridged by straight lines" if found.gaps else ""
-
-
-def _body(found: Candidate) -> tuple[str, ...]:
-    """Compare the curve with the solid inside the cloud, where there is one."""
-    if not found.solid.trusted:
-        return ()
-    handles, loops = found.solid.handles, found.curve.loops
-    outside = float((found.winding < OUTSIDE_WARNING).mean())
-    return (
-        "" if handles is None or handles <= loops else f"the body has {handles} handles, the curve only {loops} loops",
-        "" if handles is None or handles >= loops else f"the curve has {loops} loops, the body only {handles} handles",
-        f"{outside:.0%} of the curve lies outside the body" if outside > OUTSIDE_SHARE else "",
-    )

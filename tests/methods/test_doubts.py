@@ -1,0 +1,185 @@
+"""Doubts about a curve, from plain data: true curves raise none, and each fault raises its own."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tiskel import CurveGraph, CurveWarning, ShapeParams, contract, evaluate, extract_skeleton, make_shape, shape_graph
+from tiskel.arrays import Points
+from tiskel.geometry.doubt import UNKNOWN, warning_from
+from tiskel.geometry.graph import tidy_edges
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
+from tiskel.geometry.solid import solid_of
+from tiskel.methods.robust.doubts import doubts_of
+from tiskel.methods.robust.judged import Judged
+from tiskel.methods.robust.network import prepared
+
+
+def dense(graph: CurveGraph, step: float = 0.1) -> CurveGraph:
+    """Return a curve with nodes a step apart."""
+    nodes, radii, edges = list(graph.nodes), list(graph.radii), []
+    for (a, b), length in zip(graph.edges.tolist(), graph.lengths.tolist(), strict=True):
+        cuts = np.linspace(0, 1, max(1, round(length / step)) + 1)[1:-1]
+        chain = [a, *range(len(nodes), len(nodes) + len(cuts)), b]
+        nodes += [(1 - t) * graph.nodes[a] + t * graph.nodes[b] for t in cuts]
+        radii += [(1 - t) * graph.radii[a] + t * graph.radii[b] for t in cuts]
+        edges += list(zip(chain[:-1], chain[1:], strict=True))
+    return CurveGraph(np.array(nodes), tidy_edges(np.array(edges, np.int32)), np.array(radii))
+
+
+def judged(cloud: Points, graph: CurveGraph) -> Judged:
+    """Return a curve with a cloud, each point of which contracts to its node."""
+    network = prepared(cloud, 14)
+    node = np.linalg.norm(cloud[:, None] - graph.nodes, axis=2).argmin(axis=1).astype(np.int32)
+    solid = solid_of(network.oriented(graph.nodes[node] @ network.axes.T))
+    return Judged(
+        graph=graph, points=cloud, normals=network.normals @ network.axes, spacings=network.spacings,
+        node_of_point=node, contracted=graph.nodes[node], left_out=np.zeros(len(cloud), bool), solid=solid,
+    )  # fmt: skip
+
+
+def true(name: str, **sampling: float) -> Judged:
+    shape = shape_graph(name)
+    cloud = make_shape(shape, ShapeParams(**{"count": 3000, **sampling}))[0]  # type: ignore[arg-type]
+    return judged(cloud, dense(shape))
+
+
+def codes(j: Judged) -> dict[str, str]:
+    """Return the severity of each doubt by its code."""
+    return {doubt.code: doubt.severity for doubt in doubts_of(j)}
+
+
+@pytest.mark.parametrize("name", ["y", "torus", "mug", "ladder", "hand", "banana"])
+def test_true_curves_raise_no_warning(name: str) -> None:
+    assert "warning" not in codes(true(name)).values()
+    assert "warning" not in codes(true(name, noise=0.1)).values()
+
+
+@pytest.mark.parametrize("name", ["y", "torus", "mug", "hand"])
+def test_true_curves_over_holes_in_the_scan_raise_no_warning(name: str) -> None:
+    """A fifth of the surface is missing: what is in the air then is over holes, and a note."""
+    assert "warning" not in codes(true(name, missing=0.2)).values()
+
+
+def with_edges(j: Judged, *added: tuple[int, int]) -> Judged:
+    graph = CurveGraph(j.graph.nodes, np.concatenate([j.graph.edges, np.array(added, np.int32)]), j.graph.radii)
+    return replace(j, graph=graph)
+
+
+def test_a_chord_through_the_air_is_told_three_ways_with_places_on_it() -> None:
+    y = true("y")
+    a, b = np.flatnonzero(y.graph.degrees == 1)[:2].tolist()
+    found = {doubt.code: doubt for doubt in doubts_of(with_edges(y, (a, b)))}
+    assert {"in-air", "outside", "loops"} <= set(found)
+    ends = y.graph.nodes[[a, b]]
+    way = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    for code in ("in-air", "outside"):
+        places = np.array(found[code].places)
+        off = places - ends[0]
+        np.testing.assert_allclose(off, np.outer(off @ way, way), atol=1e-9)  # on the chord
+        assert 1 <= len(places) <= 3
+        assert found[code].share > 0.1
+    assert "the curve has 1 loops, the body only 0 handles" in str(found["loops"])
+
+
+def test_a_loop_that_is_missing_is_told() -> None:
+    ring = true("torus")
+    opened = replace(ring, graph=CurveGraph(ring.graph.nodes, ring.graph.edges[1:], ring.graph.radii))
+    (doubt,) = [doubt for doubt in doubts_of(opened) if doubt.code == "loops"]
+    assert "the body has 1 handles, the curve only 0 loops" in str(doubt)
+
+
+def test_a_limb_without_a_branch_is_told_and_where() -> None:
+    cross = true("cross")
+    limb = cross.graph.nodes[np.flatnonzero(cross.graph.degrees == 1)[0]]
+    near = np.linalg.norm(cross.graph.nodes - limb, axis=1) < 0.6 * np.linalg.norm(limb)
+    kept = np.flatnonzero(~near)
+    place = np.full(len(near), -1, np.int32)
+    place[kept] = np.arange(len(kept))
+    edges = place[cross.graph.edges]
+    less = CurveGraph(cross.graph.nodes[kept], edges[(edges >= 0).all(axis=1)], cross.graph.radii[kept])
+    (doubt,) = [doubt for doubt in doubts_of(judged(cross.points, less)) if doubt.code == "far"]
+    assert np.linalg.norm(np.array(doubt.places[0]) - limb) < 0.5 * np.linalg.norm(limb)
+
+
+def cut(j: Judged, low: float, high: float) -> Judged:
+    """Return the same without cloud and curve between two heights along z, where both are."""
+    inside = (j.graph.nodes[:, 2] > low) & (j.graph.nodes[:, 2] < high)
+    name = np.cumsum(~inside) - 1
+    links = j.graph.edges[~inside[j.graph.edges].any(axis=1)]
+    graph = CurveGraph(j.graph.nodes[~inside], name[links].astype(np.int32), j.graph.radii[~inside])
+    return judged(j.points[(j.points[:, 2] < low) | (j.points[:, 2] > high)], graph)
+
+
+def test_ends_at_a_hole_that_face_each_other_are_told_and_the_mouths_of_tubes_are_not() -> None:
+    capsule = true("capsule")
+    assert "open-ends" not in codes(cut(capsule, 0.3, 9))  # a mouth that faces nothing
+    (doubt,) = [doubt for doubt in doubts_of(cut(capsule, -0.3, 0.3)) if doubt.code == "open-ends"]
+    assert doubt.text.startswith("2 ends")
+    np.testing.assert_allclose(np.abs(np.array(doubt.places)[:, 2]), 0.3, atol=0.1)
+    two = np.concatenate([capsule.points, capsule.points + [0, 0, 2.4]])
+    nodes = np.concatenate([capsule.graph.nodes, capsule.graph.nodes + [0, 0, 2.4]])
+    edges = np.concatenate([capsule.graph.edges, capsule.graph.edges + len(capsule.graph.nodes)])
+    pair = CurveGraph(nodes, edges, np.tile(capsule.graph.radii, 2))
+    assert "open-ends" not in codes(judged(two, pair))  # two bodies, each with its caps
+
+
+def leaf(count: int = 3000) -> Points:
+    generator = np.random.default_rng(1)
+    return np.stack([generator.normal(0, 1e-3, count), *generator.uniform(-1, 1, (2, count)) * [[0.4], [2]]], axis=1)
+
+
+def spine(x: float, regime: Regime) -> CurveGraph:
+    """Return a straight curve along a leaf, so far before it, with the radius that cones would have."""
+    nodes = np.stack([np.full(30, x), np.zeros(30), np.linspace(-1.8, 1.8, 30)], axis=1)
+    links = np.stack([np.arange(29), np.arange(1, 30)], axis=1).astype(np.int32)
+    return CurveGraph(nodes, links, np.full(30, max(x, 0.2)), regimes=np.full(30, regime, np.uint8))
+
+
+def test_a_curve_beside_a_leaf_is_wrong_and_one_on_it_is_noted() -> None:
+    beside = codes(judged(leaf(), spine(0.5, Regime.TUBE)))
+    assert (beside["in-air"], beside["flat"], beside["one-sided"]) == ("warning", "warning", "note")
+    upon = codes(judged(leaf(), spine(0.0, Regime.SHEET)))
+    assert "warning" not in upon.values()
+    assert {"flat", "one-sided"} <= set(upon)
+
+
+def test_bridges_bounds_and_dust_are_notes_until_they_are_much() -> None:
+    y = true("y")
+    count = len(y.graph.edges)
+    one, many = np.arange(count) < 2, np.arange(count) < count // 2
+    assert codes(replace(y, graph=replace(y.graph, bridged=one)))["bridged"] == "note"
+    assert codes(replace(y, graph=replace(y.graph, bridged=many)))["bridged"] == "warning"
+    thin = np.full(len(y.graph.nodes), RadiusSource.BOUNDED, np.uint8)
+    assert codes(replace(y, graph=replace(y.graph, radius_sources=thin)))["thin"] == "note"
+    some, much = (np.arange(len(y.points)) < n for n in (20, 600))
+    assert codes(replace(y, left_out=some))["small-parts"] == "note"
+    assert codes(replace(y, left_out=much))["small-parts"] == "warning"
+
+
+def test_a_ball_has_no_curve_skeleton() -> None:
+    ball = np.random.default_rng(0).normal(size=(2000, 3))
+    ball /= np.linalg.norm(ball, axis=1)[:, None]
+    assert "hardly longer than it is thick" in str(extract_skeleton(contract(ball)).warnings[0])
+
+
+def test_shares_are_those_of_the_measures() -> None:
+    """Of a curve that a method made, moved aside: what is outside and in the air is one number for all."""
+    made = extract_skeleton(contract(make_shape(shape_graph("y"))[0]))
+    aside = replace(made, nodes=made.nodes + [0.2, 0.0, 0.0], warnings=(), notes=())
+    quality = evaluate(aside).as_dict()
+    j = replace(judged(made.cloud, CurveGraph(aside.nodes, aside.edges, aside.radii)), contracted=made.contracted)
+    found = {doubt.code: doubt for doubt in doubts_of(j)}
+    assert found["in-air"].share == pytest.approx(quality["air"]["curve"], abs=1e-9)
+    assert found["outside"].share == pytest.approx(1 - quality["inside"]["curve"], abs=1e-9)
+
+
+def test_warnings_come_back_from_json_and_from_older_files() -> None:
+    doubt = CurveWarning("far", "much", "note", 0.25, ((1.0, 2.0, 3.0),))
+    assert warning_from(doubt.as_dict()) == doubt
+    assert warning_from("as it once was") == CurveWarning(UNKNOWN, "as it once was")
+    moved = doubt.moved(lambda points: 2 * points + 1)
+    assert moved == replace(doubt, places=((3.0, 5.0, 7.0),))
+    assert replace(doubt, places=()).moved(lambda points: points).places == ()

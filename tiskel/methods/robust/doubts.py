@@ -1,0 +1,217 @@
+"""Where a curve may be wrong, from the curve, its cloud and the solid alone, whatever regime made it.
+
+=============== ======== ==========================================================================
+code            severity what
+=============== ======== ==========================================================================
+``in-air``      warning  curve neither at the points nor between them, bridges aside
+``outside``     warning  curve outside the body, as ``tiskel metrics`` counts it
+``loops``       warning  the body has more or fewer handles than the curve has loops
+``open-ends``   warning  ends without a cap that look at another part of the curve: a gap left open
+``far``         warning  points far from the curve: a part without a branch
+``flat``        warning  cones in a body whose normals hardly turn; a note where a sheet was told
+``short``       warning  the body is hardly longer than thick
+``bridged``     note     gaps crossed by straight lines; a warning where they are much of the curve
+``small-parts`` note     points left out in small parts; a warning where they are many
+``one-sided``   note     seen from one side: the curve is on what was seen
+``thin``        note     radii are bounds, the body is thinner than its points tell
+=============== ======== ==========================================================================
+
+A warning says that the curve may be wrong, a note that it is worth less than it
+seems. Levels stand in :mod:`tiskel.methods.robust.levels`.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import TINY, Mask, Numbers, Points
+from tiskel.geometry.air import in_the_air
+from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.doubt import CurveWarning, Severity, as_places
+from tiskel.geometry.graph import CurveGraph, component_labels
+from tiskel.geometry.oriented import oriented_cloud, places_inside
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
+from tiskel.geometry.representatives import few_places
+from tiskel.methods.robust import levels
+from tiskel.methods.robust.judged import Judged
+from tiskel.methods.robust.openings import open_ends_in_sight
+from tiskel.methods.robust.turning import flat_points, one_sided_nodes
+
+
+def doubts_of(judged: Judged) -> tuple[CurveWarning, ...]:
+    """Return the warnings and notes about a curve, what weighs most first.
+
+    Parameters
+    ----------
+    judged : Judged
+
+    Returns
+    -------
+    tuple of CurveWarning
+        Places in the unit of the curve.
+    """
+    checks = CHECKS if len(judged.graph.edges) else (_short, _small)
+    told = [doubt for check in checks if (doubt := check(judged)) is not None]
+    return tuple(sorted(told, key=lambda doubt: doubt.severity != "warning"))
+
+
+def _doubt(
+    code: str, text: str, share: float, places: Points, weight: Numbers | None = None, severity: Severity = "warning"
+) -> CurveWarning:
+    few = few_places(places, np.ones(len(places)) if weight is None else weight)
+    return CurveWarning(
+        code, text.format(share=f"{share:.0%}" if share >= 0.01 else "less than 1%"), severity, share, as_places(few)
+    )
+
+
+def _severity(serious: bool) -> Severity:
+    return "warning" if serious else "note"
+
+
+def _in_air(j: Judged) -> CurveWarning | None:
+    measured = ~j.graph.bridged[j.samples.edges]
+    air = in_the_air(j.graph, j.samples, j.points, j.spacings)
+    share = air.share_of(measured)
+    if share <= levels.AIR_SHARE:
+        return None
+    wide = in_the_air(j.graph, j.samples, j.points, j.spacings, half=levels.HOLE * j.sample_radii)
+    serious = air.share_of(measured & wide.places) > levels.AIR_SERIOUS
+    text = "{share} of the curve is in the air: neither at the points nor between them"
+    text += "" if serious else ", over holes in the scan"
+    places = air.places & (measured & wide.places if serious else measured)
+    return _doubt("in-air", text, share, j.samples.points[places], air.distance[places], _severity(serious))
+
+
+def _outside(j: Judged) -> CurveWarning | None:
+    if not j.thick:
+        return None
+    step = -(-len(j.points) // levels.SURFACE_POINTS)
+    points, contracted = (np.ascontiguousarray(rows[::step]) for rows in (j.points, j.contracted))
+    surface = oriented_cloud(points, contracted)
+    inside = places_inside(surface, j.samples.points)
+    if inside is None or (~inside).mean() <= levels.OUTSIDE_SHARE:
+        return None
+    clearly = (surface.winding_numbers(j.samples.points) < levels.CLEARLY_OUTSIDE) & (
+        j.sample_radii > levels.THICK * j.spacing
+    )
+    if clearly.mean() <= levels.OUTSIDE_SHARE:
+        return None
+    text = "{share} of the curve lies outside the body"
+    return _doubt("outside", text, float((~inside).mean()), j.samples.points[clearly])
+
+
+def _loops(j: Judged) -> CurveWarning | None:
+    handles, loops = j.solid.handles, j.graph.loops
+    if not j.solid.trusted or handles is None or handles == loops:
+        return None
+    if handles > loops:
+        text = f"the body has {handles} handles, the curve only {loops} loops"
+        return CurveWarning("loops", text, share=(handles - loops) / handles)
+    text = f"the curve has {loops} loops, the body only {handles} handles"
+    return _doubt("loops", text, (loops - handles) / loops, j.graph.nodes[_cyclic(j.graph)])
+
+
+def _cyclic(graph: CurveGraph) -> Mask:
+    """Return (v,) which nodes are left when ends are taken off until there is none: loops and ways between them."""
+    left, edges = np.ones(len(graph.nodes), np.bool_), graph.edges
+    while (ends := left & (np.bincount(edges.ravel(), minlength=len(left)) < 2)).any():
+        left[ends] = False
+        edges = edges[left[edges].all(axis=1)]
+    return left
+
+
+def _open_ends(j: Judged) -> CurveWarning | None:
+    ends = open_ends_in_sight(j)
+    if len(ends) == 0:
+        return None
+    text = f"{len(ends)} ends stop at a hole in the scan and face another part of the curve: they may belong together"
+    return _doubt("open-ends", text, len(ends) / j.graph.ends, j.graph.nodes[ends])
+
+
+def _far(j: Judged) -> CurveWarning | None:
+    """Find points beyond what the curve can stand for, about the nearest place on it and about their own node."""
+    graph, kept = j.graph, ~j.left_out
+    count = int(np.clip(graph.length / max(j.spacing, TINY), levels.PLACES, levels.MOST_PLACES))
+    along = curve_samples(graph, count)
+    radii = graph.radii[graph.edges[along.edges]].max(axis=1)
+    distance, nearest = cKDTree(along.points).query(j.points)
+    own = np.linalg.norm(j.points - graph.nodes[j.node_of_point], axis=1)
+    reach = levels.FAR_SPACINGS * j.spacing
+    beyond = (
+        np.minimum(distance - levels.FAR_RADII * radii[nearest], own - levels.FAR_RADII * graph.radii[j.node_of_point])
+        - reach
+    )
+    far = kept & (beyond > 0)
+    share = float(far.mean())
+    if share <= levels.FAR_SHARE:
+        return None
+    text = "{share} of the points are far from the curve: a part of the body may have no branch"
+    return _doubt("far", text, share, j.points[far], beyond[far])
+
+
+def _flat(j: Judged) -> CurveWarning | None:
+    flat = flat_points(j.graph, j.normals, j.node_of_point, levels.FLAT) & ~j.left_out
+    share = float(flat.mean())
+    if share <= levels.FLAT_SHARE:
+        return None
+    sheet = bool((j.graph.regimes[j.node_of_point[flat]] == Regime.SHEET).mean() > levels.MOSTLY)
+    text = "{share} of the points lie where the body is flat: " + (
+        "the curve is the middle of a sheet there" if sheet else "a curve says little about it there"
+    )
+    return _doubt(
+        "flat", text, share, j.graph.nodes[np.unique(j.node_of_point[flat])], None, "note" if sheet else "warning"
+    )
+
+
+def _short(j: Judged) -> CurveWarning | None:
+    graph = j.graph
+    if len(graph.edges) and graph.length >= levels.SHORT * graph.radii.max():
+        return None
+    text = "the body is hardly longer than it is thick: its curve skeleton says little about it"
+    return CurveWarning("short", text, share=1.0)
+
+
+def _bridged(j: Judged) -> CurveWarning | None:
+    graph = j.graph
+    if not graph.bridged.any():
+        return None
+    share = float(graph.lengths[graph.bridged].sum()) / max(graph.length, TINY)
+    over = graph.edges[graph.bridged]
+    gaps = len(np.unique(component_labels(len(graph.nodes), over)[over[:, 0]]))
+    text = f"{gaps} gaps in the scan were bridged by straight lines, {{share}} of the curve"
+    serious = _severity(share > levels.BRIDGED_SHARE)
+    return _doubt("bridged", text, share, graph.nodes[over].mean(axis=1), graph.lengths[graph.bridged], serious)
+
+
+def _small(j: Judged) -> CurveWarning | None:
+    count = int(j.left_out.sum())
+    if not count:
+        return None
+    share = count / len(j.points)
+    text = f"{count} points in small separate parts were left out"
+    return _doubt("small-parts", text, share, j.points[j.left_out], None, _severity(share > levels.LEFT_OUT_SHARE))
+
+
+def _one_sided(j: Judged) -> CurveWarning | None:
+    nodes = one_sided_nodes(j.graph, j.points, j.node_of_point) | (j.graph.regimes == Regime.SHEET)
+    share = float(nodes.mean())
+    if share <= levels.ONE_SIDED_SHARE:
+        return None
+    text = "{share} of the nodes have points on one side only: what was not seen may be elsewhere"
+    return _doubt("one-sided", text, share, j.graph.nodes[nodes], None, "note")
+
+
+def _thin(j: Judged) -> CurveWarning | None:
+    thin = j.graph.radius_sources == RadiusSource.BOUNDED
+    share = float(thin.mean())
+    if share <= levels.THIN_SHARE:
+        return None
+    text = "{share} of the nodes are thinner than their points tell: their radii are bounds"
+    return _doubt("thin", text, share, j.graph.nodes[thin], None, "note")
+
+
+CHECKS: tuple[Callable[[Judged], CurveWarning | None], ...] = (
+    _in_air, _outside, _loops, _open_ends, _far, _flat, _short, _bridged, _small, _one_sided, _thin,
+)  # fmt: skip

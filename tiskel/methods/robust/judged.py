@@ -1,0 +1,66 @@
+"""What the doubts about a curve are drawn from: the curve, its cloud and the solid inside, as plain data."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.geometry.curve import CurveSamples, curve_samples
+from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.solid import Solid
+from tiskel.methods.robust import levels
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A curve and all that its doubts are drawn from; lengths in one unit.
+
+    Attributes
+    ----------
+    graph : CurveGraph
+        The curve, with radii, their sources, regimes and bridges.
+    points : (n, 3) float64
+        The distinct points of the cloud.
+    normals : (n, 3) float64
+        Unit vectors, not oriented.
+    spacings : (n,) float64
+        How far the points are apart about each.
+    node_of_point : (n,) int32
+        The node of every point.
+    contracted : (n, 3) float64
+        Where each point contracts to.
+    left_out : (n,) bool
+        Points in small parts that have no curve.
+    solid : Solid
+        The body inside the cloud, trusted or not.
+    """
+
+    graph: CurveGraph
+    points: Points
+    normals: Points
+    spacings: Numbers
+    node_of_point: Indices
+    contracted: Points
+    left_out: Mask
+    solid: Solid
+
+    @cached_property
+    def spacing(self) -> float:
+        """The median spacing."""
+        return float(np.median(self.spacings))
+
+    @cached_property
+    def samples(self) -> CurveSamples:
+        """As many places on the curve as the measures take."""
+        return curve_samples(self.graph, levels.PLACES)
+
+    @cached_property
+    def sample_radii(self) -> Numbers:
+        """(q,) the radius about each of these places."""
+        return np.asarray(self.graph.radii[self.graph.edges[self.samples.edges]].mean(axis=1))
+
+    @cached_property
+    def thick(self) -> bool:
+        """Whether some of the body is thick enough to speak of inside and outside."""
+        return bool((self.graph.radii > levels.THICK * self.spacing).any())

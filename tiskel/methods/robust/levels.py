@@ -1,0 +1,27 @@
+"""The table of levels that warnings are raised at; what each warning is, says :mod:`tiskel.methods.robust.doubts`.
+
+Found by trial on the shapes of the gallery, clean, noisy and with parts missing.
+"""
+
+from tiskel.params import MetricParams
+
+PLACES = MetricParams().curve_samples  # on the curve: those of the measures, so that shares agree
+MOST_PLACES = 20_000  # on the curve, where points look for the nearest
+SURFACE_POINTS = 16_384  # of larger clouds so many are taken to ask for inside and outside
+AIR_SHARE = 0.01  # of the length in the air, bridges aside
+HOLE = 1.5  # radii; half the length of a hole in the scan: points before and behind it count as about the curve
+AIR_SERIOUS = 0.02  # of the length that is in the air even so: from there on it is a warning
+CLEARLY_OUTSIDE = 0.25  # winding number; holes in the scan take some away from places inside
+THICK = 2.0  # spacings in a radius; where nothing is thicker there is no inside to speak of
+OUTSIDE_SHARE = 0.05  # of the places outside the body
+FAR_RADII = 2.5  # radii of the curve; a flattened limb of 4 : 1 reaches twice its mean half-width
+FAR_SPACINGS = 3.0  # spacings on top of these: points are noisy
+FAR_SHARE = 0.02  # of the points so far away
+FLAT = 0.15  # ratio of how much normals spread both ways across the curve; flat below it
+FLAT_SHARE = 0.2  # of the points at such nodes
+MOSTLY = 0.5  # of the flat points: from there on it is known that they are a sheet
+SHORT = 1.0  # largest radii that a curve is long at least, to be one
+BRIDGED_SHARE = 0.2  # of the length over gaps: from there on it is more guess than curve
+LEFT_OUT_SHARE = 0.05  # of the points: from there on they are no dust
+ONE_SIDED_SHARE = 0.2  # of the nodes with points on one side only
+THIN_SHARE = 0.05  # of the nodes whose radius is a bound
