@@ -32,11 +32,14 @@ def test_a_gap_is_bridged_and_said() -> None:
     assert 2 - 3 * STEP < min(a[2], b[2]) < 2.25 < max(a[2], b[2])  # smoothing draws both inwards
 
 
-def test_the_way_does_not_cut_a_bend_short() -> None:
-    """A hairpin three steps wide: all its length is there, though each end sees the other side."""
-    turn = np.linspace(0, 2, 41)
-    points = np.concatenate([[[x, 0, 0] for x in turn], [[2 + STEP, 2 * STEP, 0]], [[x, 4 * STEP, 0] for x in turn]])
-    assert path_tree(points).length > 3.7
+def test_the_way_does_not_take_the_short_cut_of_a_bend() -> None:
+    """A hairpin six steps wide, ten long: its ends are the open ones, though points across it are neighbours."""
+    arm, turn = np.arange(10) * STEP, np.linspace(0, np.pi, 10)[1:-1]
+    bend = [[arm[-1] + 3 * STEP * np.sin(t), 3 * STEP * np.cos(t), 0] for t in turn]
+    points = np.array([*([x, 3 * STEP, 0] for x in arm), *bend, *([x, -3 * STEP, 0] for x in arm[::-1])])
+    tree = path_tree(points)
+    assert (tree.ends, tree.loops) == (2, 0)
+    assert (tree.nodes[tree.degrees == 1, 0] < STEP).all()
 
 
 def test_the_same_cloud_makes_the_same_tree() -> None:
