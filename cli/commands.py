@@ -28,7 +28,7 @@ COMMANDS = {
     "skeleton": Entry("skeleton", "skeleton", "Turn a contracted cloud into a curve skeleton."),
     "metrics": Entry(
         "metrics", "metrics",
-        "Say how good skeletons are: topology, boundedness, inside, air, centredness, smoothness, loops.",
+        "Say how good skeletons are: topology, boundedness, inside, medialness, air, centredness and more.",
     ),
     "stability": Entry(
         "stability", "stability",

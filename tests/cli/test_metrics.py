@@ -77,7 +77,7 @@ def test_heat_maps_are_scalar_fields_and_pictures_are_drawn(
     done = tiskel("metrics", skeletons[0], "--ply", "heat.ply", "--plot", "heat.png")
     assert done.returncode == 0, done.stderr.decode()
     vertex = PlyData.read(tmp_path / "heat.ply")["vertex"].data
-    assert {"x", "y", "z", "of_curve", "beta", "inside", "centredness", "smoothness", "in_air"} <= set(
+    assert {"x", "y", "z", "of_curve", "beta", "inside", "centredness", "smoothness", "in_air", "medialness"} <= set(
         vertex.dtype.names
     )
     assert len(vertex) > 100

@@ -85,7 +85,7 @@ def repeatability(a: CurveGraph, b: CurveGraph) -> Repeatability:
     >>> from tiskel import shape_graph
     >>> from tiskel.metrics.repeatability import repeatability
     >>> alike = repeatability(shape_graph("y"), shape_graph("y"))
-    >>> alike.same_graph, alike.tips_share, alike.radii_95
+    >>> alike.same_graph, alike.tips_share, round(alike.radii_95, 6)
     (True, 1.0, 0.0)
     """
     side = diagonal(np.concatenate([a.nodes, b.nodes])) if len(a.nodes) + len(b.nodes) else 0.0
