@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tiskel import CurveGraph, ShapeParams, TiskelError, make_shape, shape_graph
+from tiskel import CurveGraph, ShapeParams, TiskelError, make_shape
 from tiskel.arrays import Points
 from tiskel.geometry.clearance import Body, CloudBody, ConeBody, mesh_surface
 from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
@@ -110,13 +110,18 @@ def test_a_narrow_wedge_is_climbed_to_its_top() -> None:
 
 
 def test_a_joint_has_no_direction_and_no_value() -> None:
-    """The last node is the joint, where each edge has its last place."""
-    y = shape_graph("y")
-    arms = np.array([[0, 3], [1, 3], [2, 3]], np.int32)
-    found = medialness(CurveGraph(y.nodes[[1, 2, 3, 0]], arms), ConeBody(y), 60)
-    assert np.isnan(found.values).sum() == 3
-    assert found.inside == 1
-    assert found.mean == pytest.approx(1, abs=0.02)
+    found = medialness_at(np.array([[1.0, 0.1, 0]] * 2), np.array([[0.0, 0, 0], [1, 0, 0]]), ConeBody(CAPSULE))
+    assert np.isnan(found.values).tolist() == [True, False]
+    assert (found.inside, found.mean) == (1, found.values[1])
+
+
+def test_short_edges_have_no_more_say_than_long_ones() -> None:
+    """Two thirds of the length is one edge on the axis, a third a hundred edges halfway to the wall."""
+    nodes = np.array([[0.3, 0, 0], [1.3, 0, 0]])
+    many = np.stack([np.linspace(0.3, 0.8, 101), np.full(101, 0.1), np.zeros(101)], axis=1)
+    edges = [[0, 1], *([i, i + 1] for i in range(2, 102))]
+    found = medialness(CurveGraph(np.concatenate([nodes, many]), np.array(edges, np.int32)), ConeBody(CAPSULE), 60)
+    assert found.mean == pytest.approx((2 + 0.5) / 3, abs=0.02)
 
 
 def test_a_curve_without_length_has_no_value() -> None:
@@ -150,3 +155,20 @@ def test_a_climb_does_not_go_through_a_thin_wall() -> None:
     areas = np.concatenate([near.surface.areas, far.surface.areas])
     rooms = CloudBody(OrientedCloud(points, normals, areas))
     assert medialness_at(np.array([[0, 0.18, 0.0]]), FIRST, rooms).best[0] == pytest.approx(0.2, rel=0.02)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_a_place_at_the_wall_climbs_inwards_though_outwards_is_as_far(name: str) -> None:
+    found = medialness_at(np.array([[1.0, 0.98 * RADIUS, 0]]), FIRST, BODIES[name])
+    assert found.best[0] == pytest.approx(RADIUS, rel=0.03)
+
+
+def test_quick_bodies_are_climbed_as_others_are() -> None:
+    class Slow:
+        def clearance(self, places: Points) -> np.ndarray:
+            return BODIES["cones"].clearance(places)
+
+    places = np.random.default_rng(0).uniform(-0.19, 0.19, (50, 3)) + [1, 0, 0]
+    axes = np.repeat(FIRST, 50, axis=0)
+    quick, slow = (medialness_at(places, axes, body) for body in (BODIES["cones"], Slow()))
+    np.testing.assert_array_equal(quick.values, slow.values)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -23,6 +23,19 @@ class Body(Protocol):
 
     def clearance(self, places: Points) -> Numbers:
         """Return (q,) the distance from places (q, 3) inside to the surface; 0 outside."""
+        ...
+
+
+@runtime_checkable
+class QuickBody(Body, Protocol):
+    """A body whose distances cost less than to tell inside from outside, which then is asked of few places."""
+
+    def contains(self, places: Points) -> Mask:
+        """Return (q,) which places (q, 3) are inside."""
+        ...
+
+    def distances(self, places: Points) -> Numbers:
+        """Return (q,) how far places (q, 3) are from the surface, inside or outside."""
         ...
 
 
@@ -63,9 +76,13 @@ class ConeBody:
         cone_feet(arrays[0], rows, lists, every, *arrays[1:], 1, 0, edge, share, out)
         return np.asarray(out < 0)
 
+    def distances(self, places: Points) -> Numbers:
+        """Return (q,) how far places (q, 3) are from the nearest sample of the surface."""
+        return np.asarray(self._surface.query(places)[0])
+
     def clearance(self, places: Points) -> Numbers:
-        """Return (q,) the distance from places (q, 3) inside to the nearest sample of the surface; 0 outside."""
-        return np.where(self.contains(places), self._surface.query(places)[0], 0.0)
+        """Return (q,) the same inside, 0 outside."""
+        return np.where(self.contains(places), self.distances(places), 0.0)
 
     @cached_property
     def _surface(self) -> cKDTree:
@@ -90,9 +107,17 @@ class CloudBody:
 
     surface: OrientedCloud
 
+    def contains(self, places: Points) -> Mask:
+        """Return (q,) which places (q, 3) are inside."""
+        return self.surface.contains(places)
+
+    def distances(self, places: Points) -> Numbers:
+        """Return (q,) how far places (q, 3) are from the nearest point."""
+        return np.asarray(self._tree.query(places)[0])
+
     def clearance(self, places: Points) -> Numbers:
-        """Return (q,) the distance from places (q, 3) inside to the nearest point; 0 outside."""
-        return np.where(self.surface.contains(places), self._tree.query(places)[0], 0.0)
+        """Return (q,) the same inside, 0 outside."""
+        return np.where(self.contains(places), self.distances(places), 0.0)
 
     @cached_property
     def _tree(self) -> cKDTree:

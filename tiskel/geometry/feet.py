@@ -67,6 +67,37 @@ def parts_of(curve: CurveGraph, longest: float) -> Parts:
     return Parts(edge, share, lengths[edge] / counts[edge], _at(curve.nodes, curve, edge, share))
 
 
+def even_places(curve: CurveGraph, count: int) -> tuple[Indices, Numbers]:
+    """Return places evenly along all edges of a curve, one after the other, however short these are.
+
+    Parameters
+    ----------
+    curve : CurveGraph
+        With length.
+    count : int
+        How many places.
+
+    Returns
+    -------
+    edges : (count,) int32
+        The edge of each.
+    shares : (count,) float64
+        How far along it.
+
+    Examples
+    --------
+    >>> from tiskel import shape_graph
+    >>> from tiskel.geometry.feet import even_places
+    >>> even_places(shape_graph("capsule"), 2)[1].round(6).tolist()
+    [0.25, 0.75]
+    """
+    ends = np.cumsum(curve.lengths)
+    along = (np.arange(count) + 0.5) / count * ends[-1]
+    edges = np.minimum(np.searchsorted(ends, along, side="right"), len(ends) - 1).astype(np.int32)
+    lengths = np.maximum(curve.lengths[edges], TINY)
+    return edges, np.clip(1 - (ends[edges] - along) / lengths, 0, 1)
+
+
 def between(values: Numbers, curve: CurveGraph, edges: Indices, shares: Numbers) -> Numbers:
     """Return (q,) what values (v,) of the nodes are at places on edges (q,), shares (q,) of the way along them."""
     first, last = curve.edges[edges].T

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Mask, Points
+from tiskel.arrays import Mask, Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.air import in_the_air
 from tiskel.geometry.clearance import CloudBody
@@ -192,7 +192,7 @@ def _curve_quality(
     curve, frame = subject.curve, subject.frame
     bounded, inside = surrounded
     with watch.measure("medialness"):
-        medial = medialness_at(samples.points, samples.directions, CloudBody(surface)) if surface.trusted else None
+        medial = _medialness(samples, surface, params) if surface.trusted else None
     with watch.measure("air"):
         air = in_the_air(curve, samples, subject.cloud)
     with watch.measure("centredness"):
@@ -206,7 +206,7 @@ def _curve_quality(
         samples=replace(samples, points=frame.undo(samples.points)),
         boundedness=bounded,
         inside=inside,
-        medialness=None if medial is None else medial.values,
+        medialness=medial,
         in_air=air.places,
         air_share=air.share,
         air_where=frame.undo(few_places(samples.points[air.places], air.distance[air.places])),
@@ -217,6 +217,14 @@ def _curve_quality(
         overall_smoothness=overall,
         hairpins=smoothness.hairpins(curve),
     )
+
+
+def _medialness(samples: CurveSamples, surface: OrientedCloud, params: MetricParams) -> Numbers:
+    """Return (q,) medialness; NaN at most samples of a curve of many short edges, since climbing takes its time."""
+    some = slice(None, None, 1 + len(samples.points) // (2 * params.curve_samples))
+    values = np.full(len(samples.points), np.nan)
+    values[some] = medialness_at(samples.points[some], samples.directions[some], CloudBody(surface)).values
+    return values
 
 
 def _graph_counts(subject: Subject) -> dict[str, float] | None:

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import Mask, Numbers, Points
-from tiskel.geometry.clearance import Body
-from tiskel.geometry.curve import curve_samples
-from tiskel.geometry.frames import across
+from tiskel.arrays import Mask, Numbers, Points, Stack
+from tiskel.geometry.clearance import Body, QuickBody
+from tiskel.geometry.feet import even_places
+from tiskel.geometry.frames import across, unit
 from tiskel.geometry.graph import CurveGraph
 
-PLACES = 500  # on a curve that is measured, about so many
+PLACES = 500  # on a curve that is measured
 DIRECTIONS = 12  # looked in at once
 LONG, SHORT = 0.5, 0.01  # of the clearance: the longest step, and the shortest before the climb ends
 TURN = np.pi * (3 - np.sqrt(5))  # the golden angle: turned by it, directions never come again
@@ -37,7 +37,7 @@ class Medialness:
     best : (q,) float64
         The best clearance across the curve; 0 outside.
     values : (q,) float64
-        Medialness of the places, 0 to 1; NaN inside where the curve has no direction, at joints.
+        Medialness of the places, 0 to 1; NaN inside where no direction is known.
     """
 
     clearance: Numbers
@@ -66,7 +66,7 @@ def medialness(curve: CurveGraph, body: Body, places: int = PLACES) -> Medialnes
     body : Body
         Such as :class:`tiskel.geometry.clearance.ConeBody`, or ``CloudBody``.
     places : int
-        About how many places are measured, evenly along the curve.
+        How many places are measured, evenly along its edges.
 
     Returns
     -------
@@ -84,8 +84,9 @@ def medialness(curve: CurveGraph, body: Body, places: int = PLACES) -> Medialnes
     """
     if curve.length == 0:
         return Medialness(np.zeros(0), np.zeros(0), np.zeros(0))
-    samples = curve_samples(curve, places)
-    return medialness_at(samples.points, samples.directions, body)
+    edges, shares = even_places(curve, places)
+    start, end = curve.nodes[curve.edges[edges, 0]], curve.nodes[curve.edges[edges, 1]]
+    return medialness_at(start + shares[:, None] * (end - start), unit(end - start), body)
 
 
 def medialness_at(places: Points, directions: Points, body: Body) -> Medialness:
@@ -122,10 +123,30 @@ def _climbed(places: Points, directions: Points, clearance: Numbers, body: Body)
         turn = number * TURN + 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
         looked = np.stack([np.cos(turn), np.sin(turn)], axis=1) @ planes[rows]
         tried = at[rows, None] + (step[rows] * high[rows])[:, None, None] * looked
-        found = body.clearance(tried.reshape(-1, 3)).reshape(len(rows), DIRECTIONS)
-        top = found.argmax(axis=1)
-        goal, reached = tried[np.arange(len(rows)), top], found.max(axis=1)
+        goal, reached = _highest(tried, high[rows], body)
         better: Mask = reached > high[rows]
         at[rows[better]], high[rows[better]] = goal[better], reached[better]
         step[rows] = np.where(better, np.minimum(2 * step[rows], LONG), step[rows] / 2)
     return np.asarray(high)
+
+
+def _highest(tried: Stack, low: Numbers, body: Body) -> tuple[Points, Numbers]:
+    """Return the place (r, 3) of each row of places (r, d, 3) with the largest clearance, and that (r,).
+
+    Where it is not above what is low (r,), it may be any number that is not. Of a
+    quick body the farthest place is asked for inside, then, where it is out, the next.
+    """
+    rows = np.arange(len(tried))
+    if not isinstance(body, QuickBody):
+        found = body.clearance(tried.reshape(-1, 3)).reshape(tried.shape[:2])
+        return tried[rows, found.argmax(axis=1)], found.max(axis=1)
+    found, asked = body.distances(tried.reshape(-1, 3)).reshape(tried.shape[:2]), rows
+    for _ in range(tried.shape[1]):
+        asked = asked[found[asked].max(axis=1) > low[asked]]
+        if len(asked) == 0:
+            break
+        top = found[asked].argmax(axis=1)
+        out = ~body.contains(tried[asked, top])
+        asked, top = asked[out], top[out]
+        found[asked, top] = 0
+    return tried[rows, found.argmax(axis=1)], found.max(axis=1)

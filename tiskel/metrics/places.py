@@ -59,8 +59,8 @@ class CurveQuality:
     inside : (q,) bool or None
         Whether each sample is inside the surface; None where the normals cannot be oriented.
     medialness : (q,) float64 or None
-        Clearance over the best clearance across the curve, 0 outside, NaN inside where the curve has no direction;
-        None where the normals cannot be oriented.
+        Clearance over the best clearance across the curve, 0 outside, NaN inside where the curve has no direction and
+        where a sample of a curve of many edges was passed over; None where the normals cannot be oriented.
     in_air : (q,) bool
         Whether each sample is neither at the points of the cloud nor between them.
     air_share : float or None
