@@ -34,6 +34,10 @@ COMMANDS = {
         "stability", "stability",
         "Say whether a contraction is stable: how normals and curvatures change from step to step.",
     ),
+    "compare": Entry(
+        "compare", "compare",
+        "Say whether two skeletons of one body are alike: the same graph, the same ends, how far they are apart.",
+    ),
     "run": Entry(
         "run", "run",
         "Do everything in one go: stage files, exports, measures, surfaces, a roll, pictures and a report in one "
