@@ -44,4 +44,13 @@ def test_the_way_does_not_take_the_short_cut_of_a_bend() -> None:
 
 def test_the_same_cloud_makes_the_same_tree() -> None:
     points = np.random.default_rng(1).random((300, 3))
-    np.testing.assert_array_equal(path_tree(points).nodes, path_tree(points.copy()).nodes)
+    other = np.random.default_rng(2).permutation(np.concatenate([points, points[:50]]))
+    np.testing.assert_array_equal(path_tree(points).nodes, path_tree(other).nodes)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 20])
+def test_a_few_points_are_no_accident(count: int) -> None:
+    line = np.outer(np.arange(count), [1.0, 0, 0])
+    tree = path_tree(line)
+    assert (tree.components, tree.loops) == (1, 0)
+    assert path_tree(np.random.default_rng(count).random((count, 3))).components == 1

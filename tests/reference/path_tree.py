@@ -23,7 +23,10 @@ ROUNDS = 2  # of smoothing, half a step each
 
 
 def path_tree(points: Points) -> CurveGraph:
-    """Return the tree of a cloud (n, 3) of distinct points in any unit; every node was a point, its ends still are."""
+    """Return the tree of a cloud (n, 3) in any unit; every node was a point, its ends still are."""
+    points = np.unique(points, axis=0)
+    if len(points) < 2:
+        return CurveGraph(points, np.zeros((0, 2), np.int32))
     tree = cKDTree(points)
     graph = _joined(points, tree)
     h = float(np.quantile(minimum_spanning_tree(graph).data, QUANTILE))

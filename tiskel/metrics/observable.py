@@ -20,6 +20,7 @@ from tiskel.geometry.spacing import spacing_of
 
 SLACK = 2.0  # spacings that a witness may be off the surface: noise up to a spacing, two standard deviations
 STEP = 0.5  # spacings: how finely the truth is cut, so that no branch is known more closely
+MOST = 50_000  # pieces of the truth: bounds the time; of denser clouds the ends are known less closely than that
 CLASS = np.sqrt(2)  # ratio of radii within which the nearest place is that of the nearest ball
 
 
@@ -49,7 +50,7 @@ def observable(truth: CurveGraph, cloud: Points) -> CurveGraph:
     (3, 0, 1.0)
     """
     spacing = spacing_of(cloud)
-    fine = _cut_finely(truth, STEP * spacing)
+    fine = _cut_finely(truth, max(STEP * spacing, truth.length / MOST))
     return _without_dangling(fine, _witnessed(fine, cloud, SLACK * spacing))
 
 
