@@ -28,11 +28,15 @@ COMMANDS = {
     "skeleton": Entry("skeleton", "skeleton", "Turn a contracted cloud into a curve skeleton."),
     "metrics": Entry(
         "metrics", "metrics",
-        "Say how good skeletons are: topology, boundedness, inside, air, centredness, smoothness, loops.",
+        "Say how good skeletons are: topology, boundedness, inside, medialness, air, centredness and more.",
     ),
     "stability": Entry(
         "stability", "stability",
         "Say whether a contraction is stable: how normals and curvatures change from step to step.",
+    ),
+    "compare": Entry(
+        "compare", "compare",
+        "Say whether two skeletons of one body are alike: the same graph, the same ends, how far they are apart.",
     ),
     "run": Entry(
         "run", "run",

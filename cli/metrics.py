@@ -96,7 +96,7 @@ def metrics(
     heat: HeatFile = None,
     plot: o.Plot = None,
 ) -> None:
-    """Say how good skeletons are: topology, boundedness, inside, air, centredness, smoothness, loops.
+    """Say how good skeletons are: topology, boundedness, inside, medialness, air, centredness and more.
 
     A table on a terminal, otherwise JSON, one line for each skeleton: `tiskel metrics gls.ply lbc.ply`. Curves of
     other programs come with their cloud: `tiskel metrics --cloud scan.ply --curve other.swc | jq .inside`

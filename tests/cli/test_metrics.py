@@ -1,4 +1,4 @@
-"""`tiskel metrics` and `tiskel stability` through real processes."""
+"""`tiskel metrics`, `tiskel stability` and `tiskel compare` through real processes."""
 
 import csv
 import json
@@ -77,7 +77,7 @@ def test_heat_maps_are_scalar_fields_and_pictures_are_drawn(
     done = tiskel("metrics", skeletons[0], "--ply", "heat.ply", "--plot", "heat.png")
     assert done.returncode == 0, done.stderr.decode()
     vertex = PlyData.read(tmp_path / "heat.ply")["vertex"].data
-    assert {"x", "y", "z", "of_curve", "beta", "inside", "centredness", "smoothness", "in_air"} <= set(
+    assert {"x", "y", "z", "of_curve", "beta", "inside", "centredness", "smoothness", "in_air", "medialness"} <= set(
         vertex.dtype.names
     )
     assert len(vertex) > 100
@@ -131,3 +131,15 @@ def test_stability_is_one_document_and_a_picture(tiskel: Runner, skeletons: list
     piped = tiskel("stability", "-", data=(tmp_path / "gls.c.ply").read_bytes())
     assert json.loads(piped.stdout)["steps"] == document["steps"]
     assert "a contraction file is needed" in one_error_line(tiskel("stability", skeletons[0]))
+
+
+def test_a_skeleton_is_like_itself_and_near_another(tiskel: Runner, skeletons: list[str]) -> None:
+    same = tiskel("compare", skeletons[0], skeletons[0])
+    assert same.returncode == 0, same.stderr.decode()
+    document = json.loads(same.stdout)
+    assert document["files"] == ["gls.ply", "gls.ply"]
+    assert document["same_graph"] is True
+    assert document["radii_95"] == pytest.approx(0, abs=1e-9)
+    other = json.loads(tiskel("compare", *skeletons).stdout)
+    assert 0 < other["radii_95"] < 2
+    assert "no file nowhere.ply" in one_error_line(tiskel("compare", "gls.ply", "nowhere.ply"))

@@ -60,6 +60,7 @@ KEYS = {
     "topology": {"bottleneck", "wasserstein", "bars", "threshold", "similar", "reasons"},
     "boundedness": {"points", "curve", "reasons"},
     "inside": {"points", "curve", "reasons"},
+    "medialness": {"curve", "reasons"},
     "air": {"curve", "places", "reasons"},
     "centredness": {"points", "curve", "points_raw", "reasons"},
     "smoothness": {"points", "curve", "reasons"},
@@ -82,6 +83,7 @@ def test_keys_are_the_same_whatever_is_given() -> None:
 def test_the_middle_of_a_capsule_is_good() -> None:
     q = strict(evaluate(*shape()))
     assert q["boundedness"]["points"] == q["inside"]["points"] == q["inside"]["curve"] == 1
+    assert q["medialness"] == {"curve": pytest.approx(1, abs=0.05), "reasons": {}}
     assert q["air"] == {"curve": 0, "places": [], "reasons": {}}
     assert q["settings"]["correspondence"] == "rows"
     assert q["graph"] == {"components": 1, "loops": 0, "ends": 2, "joints": 0, "length": pytest.approx(1.4)}
@@ -93,6 +95,7 @@ def test_a_skeleton_outside_its_cloud_is_bad_and_measured() -> None:
     assert q["boundedness"]["points"] == q["boundedness"]["curve"] == 0
     assert q["inside"]["points"] == q["inside"]["curve"] == 0
     assert q["centredness"]["points"] == q["centredness"]["curve"] == 0
+    assert q["medialness"]["curve"] == 0
     assert q["air"]["curve"] == 1
     places = np.array(q["air"]["places"])  # in the units of the input
     assert len(places) == 3
@@ -228,3 +231,18 @@ def test_pictures_of_everything_and_of_nothing_are_drawn() -> None:
     assert b"<svg" in quality_picture([("whole", cloud, whole)], "svg")
     with pytest.raises(TiskelError, match="cannot be written as 'bmp'"):
         quality_picture([("whole", cloud, whole)], "bmp")
+
+
+def test_a_line_halfway_to_the_wall_is_half_medial() -> None:
+    """The radius of the capsule is 0.2."""
+    cloud, _, nodes, edges = shape(3000)
+    q = strict(evaluate(cloud, nodes=nodes + [0.1, 0, 0], edges=edges))
+    assert q["medialness"]["curve"] == pytest.approx(0.5, abs=0.05)
+
+
+def test_where_inside_is_not_known_medialness_is_not() -> None:
+    generator = np.random.default_rng(0)
+    fog = generator.random((400, 3))
+    q = strict(evaluate(fog, nodes=np.array([[0.2, 0.2, 0.2], [0.8, 0.8, 0.8]]), edges=[[0, 1]]))
+    assert q["medialness"]["curve"] is None
+    assert q["medialness"]["reasons"]["curve"] == q["inside"]["reasons"]["curve"]

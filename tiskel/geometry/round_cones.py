@@ -98,20 +98,20 @@ def sample_union(shape: ConeGraph, count: int, generator: np.random.Generator) -
     (count, 3) float64
         In the unit of the shape.
     """
-    areas = np.array([sum(_areas(*_cone(shape, e))) for e in range(len(shape.edges))])
-    around = _touching(shape)
+    areas = cone_areas(shape)
+    around = touching(shape)
     found: list[Points] = []
     have = 0
     while have < count:
         shares = generator.multinomial(min(BATCH, 2 * (count - have) + 1000), areas / areas.sum())
-        batch = np.concatenate([_visible(shape, e, int(m), around[e], generator) for e, m in enumerate(shares)])
+        batch = np.concatenate([visible(shape, e, int(m), around[e], generator) for e, m in enumerate(shares)])
         found.append(generator.permutation(batch))
         have += len(batch)
     return np.concatenate(found)[:count]
 
 
-def _touching(shape: ConeGraph) -> list[Indices]:
-    """Return for each part the others whose bounding balls meet its own."""
+def touching(shape: ConeGraph) -> list[Indices]:
+    """Return for each part (k,) int32 the others whose bounding balls meet its own."""
     ends = shape.nodes[shape.edges]
     middle, reach = ends.mean(axis=1), shape.lengths / 2 + shape.radii[shape.edges].max(axis=1)
     lists = cKDTree(middle).query_ball_point(middle, 1.01 * (reach + reach.max()), return_sorted=True)
@@ -123,10 +123,15 @@ def _touching(shape: ConeGraph) -> list[Indices]:
     return found
 
 
-def _visible(
+def cone_areas(shape: ConeGraph) -> Numbers:
+    """Return (e,) the area of every round cone of a shape, as if it were alone, in the squared unit of the shape."""
+    return np.array([sum(_areas(*_cone(shape, e))) for e in range(len(shape.edges))])
+
+
+def visible(
     shape: ConeGraph, edge: int, count: int, others: Indices, generator: np.random.Generator
 ) -> Points:  # fmt: skip
-    """Sample one cone and drop what lies inside another part or on an open end."""
+    """Return points (k, 3) of one cone, of so many those that do not lie inside another part or on an open end."""
     a, b, ra, rb = _cone(shape, edge)
     points, end = sample_cone(a, b, ra, rb, count, generator)
     opened = [np.isin(node, shape.open_ends) for node in shape.edges[edge]]

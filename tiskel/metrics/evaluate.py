@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Mask, Points
+from tiskel.arrays import Mask, Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.air import in_the_air
+from tiskel.geometry.clearance import CloudBody
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.oriented import OrientedCloud, oriented_cloud, places_inside
@@ -17,6 +18,7 @@ from tiskel.metrics.barcode import Barcode, barcode
 from tiskel.metrics.boundedness import Boundedness, boundedness
 from tiskel.metrics.centredness import curve_centredness, point_centredness
 from tiskel.metrics.loops import Loops, count_loops
+from tiskel.metrics.medialness import medialness_at
 from tiskel.metrics.places import CurveQuality, PointQuality
 from tiskel.metrics.result import Quality
 from tiskel.metrics.subject import Subject, make_subject
@@ -40,8 +42,9 @@ def evaluate(
     The measures are those of the skeleton evaluation toolbox; where print and
     toolbox differ, the toolbox, which made the published tables, is followed,
     and :class:`tiskel.MetricParams` names the alternatives. Beyond it: a true
-    inside test, curve in the air (:mod:`tiskel.geometry.air`), loops of surface,
-    solid and curve, and reasons where there is no value.
+    inside test, medialness (:mod:`tiskel.metrics.medialness`), curve in the air
+    (:mod:`tiskel.geometry.air`), loops of surface, solid and curve, and reasons
+    where there is no value.
 
     Parameters
     ----------
@@ -157,7 +160,7 @@ def _measures(
     surrounded = [(bounded.take(rows), None if inside is None else inside[rows]) for rows in (of_points, of_curve)]
     return (
         _point_quality(subject, surrounded[0], params, watch) if len(subject.points) else None,
-        _curve_quality(subject, samples, surrounded[1], params, watch) if len(subject.curve.edges) else None,
+        _curve_quality(subject, samples, surface, surrounded[1], params, watch) if len(subject.curve.edges) else None,
     )
 
 
@@ -183,10 +186,13 @@ def _point_quality(subject: Subject, surrounded: Surrounded, params: MetricParam
 
 
 def _curve_quality(
-    subject: Subject, samples: CurveSamples, surrounded: Surrounded, params: MetricParams, watch: Stopwatch
-) -> CurveQuality:
+    subject: Subject, samples: CurveSamples, surface: OrientedCloud, surrounded: Surrounded,
+    params: MetricParams, watch: Stopwatch,
+) -> CurveQuality:  # fmt: skip
     curve, frame = subject.curve, subject.frame
     bounded, inside = surrounded
+    with watch.measure("medialness"):
+        medial = _medialness(samples, surface, params) if surface.trusted else None
     with watch.measure("air"):
         air = in_the_air(curve, samples, subject.cloud)
     with watch.measure("centredness"):
@@ -200,6 +206,7 @@ def _curve_quality(
         samples=replace(samples, points=frame.undo(samples.points)),
         boundedness=bounded,
         inside=inside,
+        medialness=medial,
         in_air=air.places,
         air_share=air.share,
         air_where=frame.undo(few_places(samples.points[air.places], air.distance[air.places])),
@@ -210,6 +217,14 @@ def _curve_quality(
         overall_smoothness=overall,
         hairpins=smoothness.hairpins(curve),
     )
+
+
+def _medialness(samples: CurveSamples, surface: OrientedCloud, params: MetricParams) -> Numbers:
+    """Return (q,) medialness; NaN at most samples of a curve of many short edges, since climbing takes its time."""
+    some = slice(None, None, 1 + len(samples.points) // (2 * params.curve_samples))
+    values = np.full(len(samples.points), np.nan)
+    values[some] = medialness_at(samples.points[some], samples.directions[some], CloudBody(surface)).values
+    return values
 
 
 def _graph_counts(subject: Subject) -> dict[str, float] | None:

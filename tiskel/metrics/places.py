@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from tiskel.arrays import Edges, Indices, Mask, Numbers, Points
 from tiskel.geometry.curve import CurveSamples
 from tiskel.metrics.boundedness import Boundedness
@@ -56,6 +58,9 @@ class CurveQuality:
         How each sample is surrounded by the cloud.
     inside : (q,) bool or None
         Whether each sample is inside the surface; None where the normals cannot be oriented.
+    medialness : (q,) float64 or None
+        Clearance over the best clearance across the curve, 0 outside, NaN inside where the curve has no direction and
+        where a sample of a curve of many edges was passed over; None where the normals cannot be oriented.
     in_air : (q,) bool
         Whether each sample is neither at the points of the cloud nor between them.
     air_share : float or None
@@ -81,6 +86,7 @@ class CurveQuality:
     samples: CurveSamples
     boundedness: Boundedness
     inside: Mask | None
+    medialness: Numbers | None
     in_air: Mask
     air_share: float | None
     air_where: Points
@@ -100,3 +106,11 @@ def bounded_share(measured: PointQuality | CurveQuality | None) -> float | None:
 def inside_share(measured: PointQuality | CurveQuality | None) -> float | None:
     """Return the share of places that are inside, None where that is not known."""
     return None if measured is None else share(measured.inside)
+
+
+def mean_medialness(measured: CurveQuality | None) -> float | None:
+    """Return the mean medialness of the places that have one, None where it is not known."""
+    if measured is None or measured.medialness is None:
+        return None
+    known = measured.medialness[~np.isnan(measured.medialness)]
+    return float(known.mean()) if len(known) else None

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from tiskel.metrics.loops import Loops
-from tiskel.metrics.places import CurveQuality, PointQuality, bounded_share, inside_share
+from tiskel.metrics.places import CurveQuality, PointQuality, bounded_share, inside_share, mean_medialness
 from tiskel.metrics.shares import settled, share
 from tiskel.metrics.topology import Topology
 from tiskel.params import MetricParams
@@ -80,6 +80,7 @@ class Quality:
             "topology": self._topology(),
             "boundedness": self._pair(bounded_share(p), bounded_share(c)),
             "inside": self._pair(inside_share(p), inside_share(c), self.unoriented),
+            "medialness": self._medialness(),
             "air": self._air(),
             "centredness": self._centredness(),
             "smoothness": self._smoothness(),
@@ -105,6 +106,11 @@ class Quality:
             if value is None:
                 reasons[name] = absent if measured is None else missing
         return {"points": points, "curve": curve, **more, "reasons": reasons}
+
+    def _medialness(self) -> Document:
+        value, missing = mean_medialness(self.curve), self.unoriented or "the curve has no direction anywhere"
+        reasons = {"curve": NO_CURVE if self.curve is None else missing} if value is None else {}
+        return {"curve": value, "reasons": reasons}
 
     def _air(self) -> Document:
         """Return the share of the curve in the air, and a few places of it."""

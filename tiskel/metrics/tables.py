@@ -42,6 +42,7 @@ COLUMNS = (
     Column(("boundedness", "curve"), "bounded curve", "high"),
     Column(("inside", "points"), "inside points", "high"),
     Column(("inside", "curve"), "inside curve", "high"),
+    Column(("medialness", "curve"), "medial curve", "high"),
     Column(("air", "curve"), "curve in the air", "low"),
     Column(("centredness", "points"), "centred points", "high"),
     Column(("centredness", "curve"), "centred curve", "high"),

@@ -10,7 +10,7 @@ from tiskel.metrics.boundedness import Boundedness
 from tiskel.metrics.places import CurveQuality, PointQuality
 from tiskel.metrics.result import Quality
 
-NAMES = ("of_curve", "beta", "bounded", "inside", "centredness", "smoothness", "in_air")
+NAMES = ("of_curve", "beta", "bounded", "inside", "centredness", "smoothness", "in_air", "medialness")
 
 
 def dump_heat(quality: Quality) -> bytes:
@@ -19,7 +19,7 @@ def dump_heat(quality: Quality) -> bytes:
     Its vertices are the skeletal points, then the samples and the vertices of the
     curve, in the input's units. Properties: of_curve (0 skeletal point, 1 sample
     of the curve, 2 vertex of the curve), beta, bounded, inside, centredness,
-    smoothness, in_air.
+    smoothness, in_air, medialness.
     """
     parts = [_points(quality.points), *_curve(quality.curve)]
     places = np.concatenate([part[0] for part in parts])
@@ -34,14 +34,14 @@ Part = tuple[Points, Table]
 def _points(p: PointQuality | None) -> Part:
     if p is None:
         return np.zeros((0, 3)), np.zeros((0, len(NAMES)))
-    return p.points, _columns(0, len(p.points), p.boundedness, p.inside, p.centredness, p.smoothness, None)
+    return p.points, _columns(0, len(p.points), p.boundedness, p.inside, p.centredness, p.smoothness, None, None)
 
 
 def _curve(c: CurveQuality | None) -> list[Part]:
     if c is None:
         return []
-    samples = _columns(1, len(c.samples.points), c.boundedness, c.inside, c.centredness, None, c.in_air)
-    vertices = _columns(2, len(c.vertices), None, None, None, c.smoothness, None)
+    samples = _columns(1, len(c.samples.points), c.boundedness, c.inside, c.centredness, None, c.in_air, c.medialness)
+    vertices = _columns(2, len(c.vertices), None, None, None, c.smoothness, None, None)
     return [(c.samples.points, samples), (c.nodes[c.vertices], vertices)]
 
 
