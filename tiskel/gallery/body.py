@@ -101,6 +101,10 @@ class Body(CurveGraph):
         """Return (n,) the distances of places (n, 3) to the surface, negative inside, in the unit of the shape."""
         return np.asarray(np.where(self.inside(points), -1.0, 1.0) * self._surface.query(points)[0])
 
+    def clearance(self, places: Points) -> Numbers:
+        """Return (q,) the distances from places (q, 3) inside to the surface, 0 outside, in the unit of the shape."""
+        return np.maximum(-self.distance(places), 0.0)
+
     @cached_property
     def _surface(self) -> cKDTree:
         return cKDTree(self.sample(DENSE, np.random.default_rng(0)))
