@@ -44,7 +44,8 @@ COMMANDS = {
         "folder.",
     ),
     "shape": Entry(
-        "shape", "shape", "Make a cloud whose curve skeleton is known: a union of round cones.", bare=True
+        "shape", "shape", "Make a cloud whose curve skeleton is known: tubes, plants, blocks, torsos, wires.",
+        bare=True,
     ),
     "convert": Entry("convert", "convert", "Convert a cloud, a mesh or a skeleton to another format."),
     "info": Entry(

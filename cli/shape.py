@@ -12,6 +12,7 @@ from tiskel.cli.skeleton import format_of
 from tiskel.params import ShapeParams
 
 SHAPE = ShapeParams()
+SCAN = "Scan"
 
 Name = Annotated[str | None, typer.Argument(metavar="[NAME]", help="A shape; none lists them.", show_default=False)]
 Count = Annotated[int, typer.Option("-n", "--count", min=1, metavar="N", help="Points.")]
@@ -19,8 +20,28 @@ Noise = Annotated[float, typer.Option(metavar="F", help="Gaussian noise, in smal
 Missing = Annotated[float, typer.Option(metavar="F", help="Share of the surface cut out in patches.")]
 Uneven = Annotated[float, typer.Option(metavar="F", help="Ratio of highest to lowest density.")]
 Seed = Annotated[int, typer.Option(min=0, help="Of everything random.")]
+View = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--view",
+        metavar="x,y,z",
+        help="Only what a sensor in this direction sees (hidden-point removal); again for more sides.",
+        show_default=False,
+        rich_help_panel=SCAN,
+    ),
+]
+SensorDistance = Annotated[
+    float, typer.Option(metavar="F", help="How far sensors are, in diagonals of the shape.", rich_help_panel=SCAN)
+]
+SensorNoise = Annotated[
+    float, typer.Option(metavar="F", help="Noise along the rays, in smallest radii of the shape.", rich_help_panel=SCAN)
+]
+Table = Annotated[
+    bool,
+    typer.Option("--table", help="A table under it, normal to z; a quarter of the points.", rich_help_panel=SCAN),
+]
 SkeletonOutput = Annotated[
-    Path | None, typer.Option("--skeleton", metavar="OUT", help="Also write the analytic skeleton.", show_default=False)
+    Path | None, typer.Option("--skeleton", metavar="OUT", help="Also write the true skeleton.", show_default=False)
 ]
 
 
@@ -33,23 +54,53 @@ def shape(
     missing: Missing = SHAPE.missing,
     uneven: Uneven = SHAPE.uneven,
     seed: Seed = SHAPE.seed,
+    view: View = None,
+    sensor_distance: SensorDistance = SHAPE.sensor_distance,
+    sensor_noise: SensorNoise = SHAPE.sensor_noise,
+    table: Table = SHAPE.table,
     skeleton: SkeletonOutput = None,
 ) -> None:
-    """Make a cloud whose curve skeleton is known: a union of round cones.
+    """Make a cloud whose curve skeleton is known: tubes, plants, blocks, torsos, wires.
 
     `tiskel shape hand -n 16384 -o hand.ply --skeleton hand.skeleton.ply`
+
+    `tiskel shape torso --view 1,-2,0.5 --sensor-noise 0.05 --table -o scan.ply`
     """
-    from tiskel import make_shape, shape_graph
-    from tiskel.gallery.catalogue import SHAPES
+    from tiskel import make_shape, named_shape
     from tiskel.io.clouds import dump_cloud
     from tiskel.io.exports import EXPORTS
 
     if name is None:
-        typer.echo("\n".join(SHAPES))
+        typer.echo(listing())
         return
-    params = ShapeParams(count=count, noise=noise, missing=missing, uneven=uneven, seed=seed)
-    points, truth = make_shape(shape_graph(name), params)
+    params = ShapeParams(
+        count=count,
+        noise=noise,
+        missing=missing,
+        uneven=uneven,
+        seed=seed,
+        views=tuple(direction(words) for words in view or ()),
+        sensor_distance=sensor_distance,
+        sensor_noise=sensor_noise,
+        table=table,
+    )
+    points, truth = make_shape(named_shape(name), params)
     target = stages.output_path(output, Path(name), "ply")
     stages.write(target, lambda: dump_cloud(points, target))
     if skeleton is not None:
         stages.write(skeleton, lambda: EXPORTS[format_of(None, str(skeleton))](truth))
+
+
+def direction(words: str) -> tuple[float, float, float]:
+    """Return the three numbers of a direction; raise TiskelError where they are others."""
+    x, y, z = stages.numbers_of("--view", words, 3)
+    return x, y, z
+
+
+def listing() -> str:
+    """Return the names of all shapes, a line for each group."""
+    from tiskel.gallery.catalogue import SHAPES
+    from tiskel.gallery.families import FAMILIES
+
+    groups = {"round cones": list(SHAPES), **{group: list(makers) for group, makers in FAMILIES.items()}}
+    return "\n".join(f"{group}: {' '.join(names)}" for group, names in groups.items())

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tiskel.contraction import contract as contract
     from tiskel.errors import TiskelError as TiskelError
     from tiskel.gallery.make import make_shape as make_shape
+    from tiskel.gallery.make import named_shape as named_shape
     from tiskel.gallery.make import shape_graph as shape_graph
     from tiskel.geometry.doubt import CurveWarning as CurveWarning
     from tiskel.geometry.graph import CurveGraph as CurveGraph
@@ -108,6 +109,7 @@ _HOME = {
     "load_cloud": "io.clouds",
     "load_curve": "io.curves",
     "make_shape": "gallery.make",
+    "named_shape": "gallery.make",
     "read_contraction": "io.stages.contraction",
     "read_skeleton": "io.stages.skeleton",
     "read_surfaces": "io.stages.surface",

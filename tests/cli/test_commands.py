@@ -8,9 +8,18 @@ import pytest
 from plyfile import PlyData, PlyElement
 
 from reference.fixtures import Runner, one_error_line
-from tiskel import LbcParams, load_cloud, read_contraction, read_skeleton
+from tiskel import (
+    LbcParams,
+    ShapeParams,
+    load_cloud,
+    make_shape,
+    named_shape,
+    read_contraction,
+    read_skeleton,
+)
 from tiskel.cli.commands import COMMANDS
 from tiskel.gallery.catalogue import SHAPES
+from tiskel.gallery.families import FAMILIES
 
 
 def test_stages_chain_through_pipes_with_data_alone_on_stdout(tiskel: Runner, cloud: Path) -> None:
@@ -119,9 +128,36 @@ def test_reference_clouds_go_through_run(name: str, tiskel: Runner, reference_fo
 
 
 def test_shape_lists_names_and_is_seeded(tiskel: Runner) -> None:
-    assert tiskel("shape").stdout.decode().split() == list(SHAPES)
+    groups = dict(line.split(": ") for line in tiskel("shape").stdout.decode().splitlines())
+    assert {group: names.split() for group, names in groups.items()} == {
+        "round cones": list(SHAPES), **{group: list(makers) for group, makers in FAMILIES.items()}
+    }  # fmt: skip
     one, same, other = (tiskel("shape", "egg", "-n", 50, "--seed", s).stdout for s in (1, 1, 2))
     assert one == same != other
+
+
+def test_shape_is_scanned_from_sides_on_a_table(tiskel: Runner, tmp_path: Path) -> None:
+    words = ("shape", "block-2", "-n", 400, "--view", "1,-2,1", "--view", "-1,2,1", "--sensor-noise", 0.05, "--table")
+    assert tiskel(*words, "-o", "a.ply", "--skeleton", "true.ply").returncode == 0
+    params = ShapeParams(count=400, views=((1, -2, 1), (-1, 2, 1)), sensor_noise=0.05, table=True)
+    points, truth = make_shape(named_shape("block-2"), params)
+    np.testing.assert_array_equal(load_cloud(tmp_path / "a.ply").points, points)
+    found = read_skeleton(tmp_path / "true.ply")
+    assert (found.components, found.loops, found.ends) == (1, 2, 0)
+    np.testing.assert_array_equal(found.nodes, truth.nodes)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--view", "1,2"), "--view needs 3 numbers"),
+        (("--view", "0,0,0"), "not all zero"),
+        (("--sensor-noise", "0.1"), "give a view"),
+        (("--view", "0,0,1", "--sensor-distance", "0.2"), "1 diagonal"),
+    ],
+)
+def test_sensors_that_make_no_sense_are_refused(words: tuple[str, ...], said: str, tiskel: Runner) -> None:
+    assert said in one_error_line(tiskel("shape", "y", *words))
 
 
 def test_convert_between_cloud_formats(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:

@@ -1,1 +1,1 @@
-"""Clouds with known curve skeletons, made from unions of round cones."""
+"""Clouds with known curve skeletons: unions of round cones, and bodies of other kinds."""

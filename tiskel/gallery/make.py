@@ -5,7 +5,11 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
+from tiskel.gallery.body import Body, Shape, is_inside, least_thickness
 from tiskel.gallery.catalogue import SHAPES
+from tiskel.gallery.families import BODIES
+from tiskel.gallery.views import Scene, scan
+from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.round_cones import ConeGraph, sample_union
 from tiskel.params import ShapeParams
@@ -20,7 +24,8 @@ def shape_graph(name: str) -> ConeGraph:
     Parameters
     ----------
     name : str
-        One of the names in :data:`tiskel.gallery.catalogue.SHAPES`, such as "y", "torus" or "hand".
+        One of the names in :data:`tiskel.gallery.catalogue.SHAPES`, such as "y", "torus" or "hand"; for the other
+        shapes see :func:`tiskel.named_shape`.
 
     Returns
     -------
@@ -44,17 +49,50 @@ def shape_graph(name: str) -> ConeGraph:
     return SHAPES[name]()
 
 
-def make_shape(shape: ConeGraph, params: ShapeParams | None = None) -> tuple[Points, Skeleton]:
-    """Return a cloud of a shape and its true skeleton.
-
-    The surface is sampled uniformly by area, then thinned towards one end of
-    its longest axis, cut by patches and blurred, as the settings say; the same
-    seed gives the same bytes.
+def named_shape(name: str) -> Shape:
+    """Return a named shape: a union of round cones, or a body of another kind.
 
     Parameters
     ----------
-    shape : ConeGraph
-        A union of round cones, such as :func:`tiskel.shape_graph` returns.
+    name : str
+        One of the names that `tiskel shape` lists, such as "y", "flat-tube", "maize", "block-3" or "stent".
+
+    Returns
+    -------
+    ConeGraph or Body
+        The curve skeleton of the shape, with radii, and its surface; lengths are of the order of one.
+
+    Raises
+    ------
+    TiskelError
+        For another name; the message lists them all.
+
+    Examples
+    --------
+    >>> from tiskel import named_shape
+    >>> stent = named_shape("stent")
+    >>> stent.components, stent.loops, stent.ends
+    (1, 13, 0)
+    """
+    if name in BODIES:
+        return BODIES[name]()
+    if name not in SHAPES:
+        raise TiskelError(f"no shape is called {name!r}; choose one of {', '.join([*SHAPES, *BODIES])}")
+    return SHAPES[name]()
+
+
+def make_shape(shape: Shape, params: ShapeParams | None = None) -> tuple[Points, Skeleton]:
+    """Return a cloud of a shape and its true skeleton.
+
+    The surface is sampled uniformly by area, thinned towards one end of its
+    longest axis, seen from some sides, cut by patches and blurred, as the
+    settings say; the same seed gives the same bytes.
+
+    Parameters
+    ----------
+    shape : ConeGraph or Body
+        A union of round cones, such as :func:`tiskel.shape_graph` returns, or any that
+        :func:`tiskel.named_shape` does.
     params : ShapeParams, optional
         The settings.
 
@@ -63,7 +101,12 @@ def make_shape(shape: ConeGraph, params: ShapeParams | None = None) -> tuple[Poi
     cloud : (n, 3) float64
         Points on the surface, in the units of the shape.
     skeleton : Skeleton
-        The graph of the shape as the skeleton of this cloud.
+        The graph of the shape as the skeleton of this cloud; all of it, seen or not.
+
+    Raises
+    ------
+    TiskelError
+        Where a sensor is so near that it sees too little.
 
     Examples
     --------
@@ -74,20 +117,39 @@ def make_shape(shape: ConeGraph, params: ShapeParams | None = None) -> tuple[Poi
     """
     params = params or ShapeParams()
     generator = np.random.default_rng(params.seed)
+    unit = least_thickness(shape)
     before_cut = int(np.ceil(params.count / (1 - params.missing)))
-    points = _uneven(shape, before_cut, params.uneven, generator)
+    points = _scanned(shape, before_cut, params, generator)
     points = _cut(points, len(points) - params.count, generator)
-    points = points + generator.normal(size=points.shape) * params.noise * shape.radii.min()
+    points = points + generator.normal(size=points.shape) * params.noise * unit
     return points, analytic_skeleton(shape, points)
 
 
-def _uneven(shape: ConeGraph, count: int, ratio: float, generator: np.random.Generator) -> Points:
+def _scanned(shape: Shape, count: int, params: ShapeParams, generator: np.random.Generator) -> Points:
+    """Return points of the whole surface, or those that sensors see, with noise along their rays."""
+    if not params.views and not params.table:
+        return _uneven(shape, count, params.uneven, generator)
+    scene = Scene(
+        sample=lambda more: _uneven(shape, more, params.uneven, generator),
+        inside=lambda places: is_inside(places, shape),
+        distance=params.sensor_distance,
+        noise=params.sensor_noise * least_thickness(shape),
+        table=params.table,
+    )
+    return scan(scene, count, params.views, generator)
+
+
+def _sampled(shape: Shape, count: int, generator: np.random.Generator) -> Points:
+    return shape.sample(count, generator) if isinstance(shape, Body) else sample_union(shape, count, generator)
+
+
+def _uneven(shape: Shape, count: int, ratio: float, generator: np.random.Generator) -> Points:
     """Sample more than needed and keep each point with a probability that falls exponentially along the axis."""
     if ratio == 1:
-        return sample_union(shape, count, generator)
+        return _sampled(shape, count, generator)
     kept: list[Points] = []
     while sum(map(len, kept)) < count:
-        points = sample_union(shape, 2 * count, generator)
+        points = _sampled(shape, 2 * count, generator)
         centred = shape.nodes - shape.nodes.mean(axis=0)
         axis = np.linalg.svd(centred, full_matrices=False)[2][0]
         low, high = (shape.nodes @ axis).min(), (shape.nodes @ axis).max()
@@ -106,7 +168,7 @@ def _cut(points: Points, surplus: int, generator: np.random.Generator) -> Points
     return points
 
 
-def analytic_skeleton(shape: ConeGraph, cloud: Points) -> Skeleton:
+def analytic_skeleton(shape: CurveGraph, cloud: Points) -> Skeleton:
     """Return the graph of a shape as a skeleton of a cloud (n, 3), each point with its nearest node."""
     everyone = np.arange(len(cloud), dtype=np.int32)
     none = np.empty((0, 3))

@@ -186,7 +186,7 @@ def sample_cone(
     """
     areas = np.array(_areas(a, b, ra, rb))
     part = np.repeat(np.arange(3), generator.multinomial(count, areas / areas.sum()))
-    first, second = _even_pairs(count, generator)
+    first, second = even_pairs(count, generator)
     length = float(np.linalg.norm(b - a))
     axis = (b - a) / length if length else np.array([0.0, 0.0, 1.0])
     sine = np.clip((ra - rb) / length, -1, 1) if length else 0.0
@@ -205,10 +205,22 @@ def sample_cone(
     return points, np.choose(part, [0, -1, 1])
 
 
-def _even_pairs(count: int, generator: np.random.Generator) -> tuple[Numbers, Numbers]:
+def even_pairs(count: int, generator: np.random.Generator) -> tuple[Numbers, Numbers]:
     """Return pairs in the unit square, as even as the plastic-number sequence makes them, from a random start.
 
     Scanners and mesh samplers spread points more evenly than chance does.
+
+    Parameters
+    ----------
+    count : int
+        How many pairs.
+    generator : numpy.random.Generator
+        Drawn from for the start.
+
+    Returns
+    -------
+    first, second : (count,) float64
+        From 0 to 1.
     """
     plastic = 1.32471795724474602596
     steps = np.arange(count)[:, None] * np.array([1 / plastic, 1 / plastic**2]) + generator.random(2)
