@@ -68,6 +68,7 @@ def contract_nodes(curve: ConeCurve, into: Indices, *, mean: bool = False) -> Co
     return replace(
         curve, nodes=nodes, radii=radii, edges=tidy_edges(name[curve.edges]),
         bridged=_bridged(name[curve.edges], curve), levels=curve.levels[kept],
+        radius_sources=curve.radius_sources[kept], regimes=curve.regimes[kept],
         node_of_section=np.append(name, np.int32(-1))[curve.node_of_section],
     )  # fmt: skip
 

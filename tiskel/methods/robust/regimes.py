@@ -46,10 +46,11 @@ def maybe_wires(found: Candidate) -> bool:
 def wires(network: Network, solid: Solid, params: RobustParams) -> Candidate:
     """Return the curve of the wire regime, and what judges it."""
     curve, sections = wire_curve(network, params)
-    owned = np.flatnonzero(sections.section >= 0).astype(np.int32)
+    node = curve.node_of_section[sections.section]
+    owned = np.flatnonzero(node >= 0).astype(np.int32)
     if not len(curve.edges):
         owned = owned[:0]
-    fit = foot_points(curve, network.points, owned, sections.section[owned], nearby_edges(curve))
+    fit = foot_points(curve, network.points, owned, node[owned], nearby_edges(curve))
     return Candidate(fit, sections, network, solid, int(curve.bridged.sum()))
 
 

@@ -21,6 +21,7 @@ from tiskel.methods.robust.wire.limbs import limbs_of
 from tiskel.methods.robust.wire.links import BRIDGE, links_of
 from tiskel.methods.robust.wire.loops import with_loops
 from tiskel.methods.robust.wire.routes import routes_of
+from tiskel.methods.robust.wire.spurs import without_spurs
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
 
@@ -36,4 +37,5 @@ def wire_curve(network: Network, params: RobustParams) -> tuple[ConeCurve, Secti
     levels = levels_of(points, links, routes, BRIDGE)
     limbs = limbs_of(levels, links.spacing)
     curve, sections = curve_of(points, links.spacing, levels, limbs, params)
+    curve = without_spurs(curve)
     return with_loops(curve, points, sections, links, params.topology), sections

@@ -47,7 +47,8 @@ def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
     """Return pairs of nodes (p, 2): ends, and what each of them points at, within reach and far along the curve."""
     ends = np.flatnonzero(curve.degrees == 1)
     near = links.lengths <= REACH * links.spacing
-    one, other = sections.section[links.first[near]], sections.section[links.second[near]]
+    node = curve.node_of_section[sections.section]
+    one, other = node[links.first[near]], node[links.second[near]]
     chosen = (one >= 0) & (other >= 0) & (one != other) & np.isin(one, ends)
     pairs = np.unique(np.stack([one[chosen], other[chosen]], axis=1), axis=0)
     if not len(pairs) or not len(ends):
