@@ -32,6 +32,7 @@ from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
+from tiskel.methods.robust.sheets import on_sheets
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
 from tiskel.timing import Stopwatch
@@ -64,7 +65,7 @@ def curve(trace: Trace, params: RobustParams) -> MethodCurve:
     if trace.sections is None:
         raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
     network = trace.prepared or prepared(trace.cloud[trace.rows], params.neighbours_for(len(trace.rows)))
-    best = _best(network, trace, params)
+    best = on_sheets(_best(network, trace, params), params.seen_from)
     return _translated(best, trace, network)
 
 

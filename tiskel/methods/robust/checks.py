@@ -9,6 +9,7 @@ import numpy.typing as npt
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.fit import ConeFit
@@ -91,6 +92,7 @@ def radius_sources(found: Candidate) -> npt.NDArray[np.uint8]:
         return curve.radius_sources  # wires know
     sources = np.full(len(curve.nodes), RadiusSource.MEASURED, np.uint8)
     sources[curve.radii < SPARSE * found.network.spacing] = RadiusSource.BOUNDED
+    sources[curve.regimes == Regime.SHEET] = RadiusSource.BOUNDED  # half a width
     bridges = np.bincount(curve.edges[curve.bridged].ravel(), minlength=len(curve.nodes))
     sources[(bridges > 0) & (bridges == curve.degrees)] = RadiusSource.MODELLED
     return sources

@@ -6,6 +6,8 @@ disc inside it: if the straight lines between its two sides, level by level, sta
 inside. What is inside, the winding number tells, which closes holes.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from tiskel.arrays import Edges, Indices, Mask, Numbers, Table
@@ -54,6 +56,41 @@ def without_filled_cycles(
         curve = contract_nodes(curve, _contraction(cycles, filled, rungs, owner, curve.levels), mean=fitted)
         curve = curve if fitted else centred(curve, network, sections)
     return curve
+
+
+def without_tight_cycles(curve: ConeCurve) -> ConeCurve:
+    """Contract, one by one, the cycles no wider than their thickest place: a hole has to fit between the two sides."""
+    while True:
+        cycle = next(filter(lambda nodes: _tight(curve, nodes), _cycles(curve)), None)
+        if cycle is None:
+            return curve
+        into = np.arange(len(curve.nodes), dtype=np.int32)
+        into[cycle] = min(cycle)
+        curve = contract_nodes(curve, into, mean=True)
+
+
+def _tight(curve: ConeCurve, cycle: list[int]) -> bool:
+    nodes = curve.nodes[cycle]
+    apart = np.linalg.norm(nodes[:, None] - nodes, axis=2)
+    return bool(apart.max() < 2 * curve.radii[cycle].max())
+
+
+def _cycles(curve: ConeCurve) -> Iterator[list[int]]:
+    """Yield a shortest cycle through each edge that a spanning forest leaves out."""
+    around, before = curve.neighbours, {}
+    for start in range(len(around)):
+        if start in before:
+            continue
+        before[start], todo = -1, [start]
+        for node in todo:
+            for other in around[node]:
+                if other not in before:
+                    before[other] = node
+                    todo.append(other)
+    for a, b in curve.edges.tolist():
+        if before[a] != b and before[b] != a:
+            cut = [[o for o in others if {node, o} != {a, b}] for node, others in enumerate(around)]
+            yield _way(cut, a, b, -1)
 
 
 def short_cycles(curve: ConeCurve) -> list[list[int]]:

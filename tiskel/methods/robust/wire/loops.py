@@ -67,9 +67,10 @@ def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
             found[end] = min(found.get(end, (apart, node)), (apart, node))
     # An end that another end has met already is closed.
     taken: set[int] = set()
-    chosen_pairs = []
-    for _, end, node in sorted((apart, end, node) for end, (apart, node) in found.items()):
-        if end not in taken and node not in taken:
-            chosen_pairs.append((end, node))
-            taken |= {end} | ({node} if curve.degrees[node] == 1 else set())
-    return np.array(chosen_pairs, np.int32).reshape(-1, 2)
+    met: list[tuple[int, int]] = []
+    nearest = sorted((apart, end, node) for end, (apart, node) in found.items())
+    for _, one, other in nearest:
+        if one not in taken and other not in taken:
+            met.append((one, other))
+            taken |= {one} | ({other} if curve.degrees[other] == 1 else set())
+    return np.array(met, np.int32).reshape(-1, 2)

@@ -1,0 +1,112 @@
+"""Sheets and one-sided scans: where the curve has to lie on what was seen.
+
+The lines along the normals of an arc meet at its centre, and round cones fitted to
+it have their axis there. Of a pipe with a third of its turn seen that is its axis.
+Of a leaf, or of the front of a body in a depth image, it is a place in the air
+behind a thing whose thickness nobody saw. Where the points of a node cover less
+than that of the turn about it, the node goes to the middle of its points on the
+sheet; its radius is half their width, a bound.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
+from tiskel.geometry.regime import Regime
+from tiskel.methods.robust.checks import Candidate
+from tiskel.methods.robust.curve import ConeCurve
+from tiskel.methods.robust.cycles import without_tight_cycles
+from tiskel.methods.robust.fit import foot_points, nearby_edges
+
+# Found by trial on leaves, plants, fronts of bodies and pipes of which a third was seen.
+TURN = np.radians(105)  # of the turn about a node that its points cover; less is a sheet, a third of a pipe 120 degrees
+MIDDLE = 0.9  # of a node's points, the middle by angle, that count: noise beside an arc does not widen it
+FEWEST = 6  # points that tell the turn
+NEAREST = 6  # points whose mean is the place on the sheet
+WIDTH = 0.9  # quantile of the distance of its points across the curve: half the width
+FACING = 0.9  # share of a node's points that face a known sensor, from which on nothing but their side was seen
+
+
+def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) -> Candidate:
+    """Return the candidate with the nodes of sheets on them, and without the cycles that lie in a sheet."""
+    curve, fit = found.curve, found.fit
+    if not len(curve.edges) or (curve.regimes != Regime.UNKNOWN).any():
+        return found
+    points, owner = found.network.points[fit.rows], fit.nodes
+    offset = _across(curve, points - curve.nodes[owner], owner)
+    sheet = _agreed(curve, _turns(offset, owner, len(curve.nodes)) < TURN)
+    if seen_from is not None:
+        sheet &= _one_sided(points, offset, owner, len(curve.nodes), found.network.placed(seen_from))
+    if not sheet.any():
+        return found
+    nodes, radii = _middles(curve, points, owner, offset, np.flatnonzero(sheet).astype(np.int32))
+    regimes = np.where(sheet, Regime.SHEET, Regime.TUBE).astype(np.uint8)
+    laid = replace(curve, nodes=nodes, radii=radii, regimes=regimes)
+    laid = without_tight_cycles(laid)
+    node = laid.node_of_section[found.sections.section]
+    rows = np.flatnonzero(node >= 0).astype(np.int32)
+    return replace(found, fit=foot_points(laid, found.network.points, rows, node[rows], nearby_edges(laid)))
+
+
+def _across(curve: ConeCurve, offset: Points, owner: Indices) -> Points:
+    """Return offsets (n, 3) from nodes without their share along the curve."""
+    first, second = curve.edges.T
+    along = curve.nodes[second] - curve.nodes[first]
+    scatter = np.zeros((len(curve.nodes), 3, 3))
+    for ends in (first, second):
+        np.add.at(scatter, ends, along[:, :, None] * along[:, None, :])
+    axis = np.linalg.eigh(scatter)[1][:, :, 2][owner]
+    return np.asarray(offset - np.einsum("ij,ij->i", offset, axis)[:, None] * axis)
+
+
+def _turns(offset: Points, owner: Indices, count: int) -> Numbers:
+    """Return (v,) how much of the turn about each node its points cover, the middle of them; pi and more where few."""
+    total = np.stack([np.bincount(owner, column, minlength=count) for column in offset.T], axis=1)[owner]
+    mean = total / np.maximum(np.linalg.norm(total, axis=1), TINY)[:, None]
+    cosine = np.einsum("ij,ij->i", offset, mean) / np.maximum(np.linalg.norm(offset, axis=1), TINY)
+    angle = np.arccos(np.clip(cosine, -1, 1))  # to the middle of the arc, on either side
+    order = np.lexsort((angle, owner))
+    size = np.bincount(owner, minlength=count)
+    starts = np.cumsum(size) - size
+    place = np.minimum(starts + np.ceil(MIDDLE * size).astype(int), starts + np.maximum(size - 1, 0))
+    turn = np.full(count, 2 * np.pi)
+    known = size >= FEWEST
+    turn[known] = 2 * angle[order][place[known]]
+    return turn
+
+
+def _agreed(curve: ConeCurve, sheet: Mask) -> Mask:
+    """Return which nodes are on a sheet by the majority of themselves and their neighbours."""
+    votes: Numbers = sheet.astype(float)
+    voters: Numbers = np.ones(len(sheet))
+    for one, other in (curve.edges.T, curve.edges[:, ::-1].T):
+        votes += np.bincount(one, sheet[other], minlength=len(sheet))
+        voters += np.bincount(one, minlength=len(sheet))
+    return np.asarray(votes > voters / 2)
+
+
+def _one_sided(points: Points, offset: Points, owner: Indices, count: int, sensor: Numbers) -> Mask:
+    """Tell of which nodes all points look at the sensor."""
+    facing = np.einsum("ij,ij->i", sensor - points, offset) > 0
+    size = np.maximum(np.bincount(owner, minlength=count), 1)
+    return np.asarray(np.bincount(owner, facing, minlength=count) >= FACING * size)
+
+
+def _middles(
+    curve: ConeCurve, points: Points, owner: Indices, offset: Points, sheets: Indices
+) -> tuple[Points, Numbers]:
+    """Return all nodes and radii, those of sheets in the middle of their points on the sheet, and half their width."""
+    nodes, radii = curve.nodes.copy(), curve.radii.copy()
+    order = np.argsort(owner, kind="stable")
+    stops = np.searchsorted(owner[order], np.arange(len(nodes) + 1))
+    for node in sheets.tolist():
+        rows = order[stops[node] : stops[node + 1]]
+        if not len(rows):
+            continue
+        middle = curve.nodes[node] + offset[rows].mean(axis=0)
+        nearest = np.argsort(((points[rows] - middle) ** 2).sum(axis=1), kind="stable")[:NEAREST]
+        nodes[node] = points[rows[nearest]].mean(axis=0)
+        width = np.linalg.norm(offset[rows] - (nodes[node] - curve.nodes[node]), axis=1)
+        radii[node] = max(float(np.quantile(width, WIDTH)), TINY)
+    return nodes, radii
