@@ -53,17 +53,17 @@ def without_spurs(curve: ConeCurve, points: Points, sections: Sections) -> ConeC
         curve = without_path(curve, shortest[1])
 
 
-def without_contained_ends(curve: ConeCurve) -> ConeCurve:
+def without_contained_ends(curve: ConeCurve, slack: float = 0.0) -> ConeCurve:
     """Cut ends back to the innermost node whose ball holds the balls of all nodes after it.
 
     The sections of a round cap are such balls; its skeleton ends in the middle
-    of the last full one.
+    of the last full one. slack is how far these balls may stick out besides.
     """
     into = np.arange(len(curve.nodes), dtype=np.int32)
     for path in curve.paths_from(ends=True):
         for last in range(len(path) - 2, 0, -1):
             away = np.linalg.norm(curve.nodes[path[:last]] - curve.nodes[path[last]], axis=1)
-            if (away + curve.radii[path[:last]] <= CONTAINED * curve.radii[path[last]]).all():
+            if (away + curve.radii[path[:last]] <= CONTAINED * curve.radii[path[last]] + slack).all():
                 into[path[:last]] = path[last]
                 break
     return contract_nodes(curve, into)

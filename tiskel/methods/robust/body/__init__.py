@@ -13,7 +13,7 @@ from tiskel.geometry.thinning import thinned
 from tiskel.methods.robust.body.centres import centred, not_round
 from tiskel.methods.robust.body.limbs import without_corners, zipped
 from tiskel.methods.robust.body.strands import evened, strands_of, with_sections
-from tiskel.methods.robust.branches import without_contained_ends, without_explained_branch
+from tiskel.methods.robust.branches import with_tips, without_contained_ends, without_explained_branch
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.fit import ConeFit, fit_cones
@@ -40,13 +40,20 @@ def body_curve(network: Network, solid: Solid, params: RobustParams) -> Candidat
             curve, network.points, sections.section, rounds=rounds, straightness=params.straightness, fixed=still
         )
 
-    found = fit(curve, params.rounds)
+    again = max(1, params.rounds // 2)
+    found = fit(without_contained_ends(fit(curve, params.rounds).curve), again)
     while (fewer := without_explained_branch(found.curve, network, sections, params.least_branch)) is not None:
-        found = fit(fewer, max(1, params.rounds // 2))
+        found = fit(fewer, again)
+    for _ in range(params.grow_ends):
+        longer = with_tips(found, network, sections)
+        if longer is None:
+            break
+        found = fit(longer, again + 1)
     return Candidate(found, sections, network, solid, 0)
 
 
 def _thinned(body: Body) -> ConeCurve:
     """Return what thinning leaves of a body, without corners, and ends in the middle of their last full ball."""
-    curve = without_contained_ends(strands_of(body, thinned(body.inside, body.order, body.tips)))
-    return without_contained_ends(without_corners(curve, body))
+    slack = body.step / 2  # what clearances on the grid are unsure of
+    curve = without_contained_ends(strands_of(body, thinned(body.inside, body.order, body.tips)), slack)
+    return without_contained_ends(without_corners(curve, body), slack)
