@@ -115,16 +115,44 @@ def oriented_cloud(points: Points, targets: Points, seed: int = 0) -> OrientedCl
     near = np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS])
     normals = principal_axes(points, near)[1][:, 2]
     areas = ring_areas(points, rings)
+    made = oriented_either_way(points, normals, areas, targets, near, seed=seed)
+    return max(made, key=lambda surface: surface.consistency)
+
+
+def oriented_either_way(
+    points: Points, normals: Points, areas: Numbers, targets: Points, near: Lists, *, seed: int = 0
+) -> tuple[OrientedCloud, OrientedCloud]:
+    """Return a surface with normals away from the targets, and with propagated ones; the consistency of both is known.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Distinct points, C-contiguous, in any unit.
+    normals : (n, 3) float64
+        Unit vectors, either way round.
+    areas : (n,) float64
+        The area that each point stands for, in the squared unit.
+    targets : (n, 3) float64
+        Where each point contracts to, in the same unit.
+    near : (n, k) int32
+        The nearest of every point, itself first, along which normals are propagated.
+    seed : int
+        Of the choice of points that the orientations are tried on.
+
+    Returns
+    -------
+    tuple of OrientedCloud
+    """
     outward = np.einsum("ij,ij->i", points - targets, normals)
     by_skeleton = np.where(outward < 0, -1.0, 1.0)
     sign, part = propagated_signs(near, normals)
     votes = np.bincount(part, areas * outward * sign)
     by_propagation = sign * np.where(votes < 0, -1.0, 1.0)[part]
-    made = [
+    one, other = (
         checked(OrientedCloud(points, normals * sign[:, None], areas, name), seed)
         for name, sign in (("skeleton", by_skeleton), ("propagation", by_propagation))
-    ]
-    return max(made, key=lambda surface: surface.consistency)
+    )
+    return one, other
 
 
 def places_inside(surface: OrientedCloud, places: Points) -> Mask | None:

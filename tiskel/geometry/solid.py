@@ -8,21 +8,43 @@ not agree on is not decided.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import ndimage
 
 from tiskel.arrays import Numbers, Stack
+from tiskel.geometry.body import Body, body_of
 from tiskel.geometry.oriented import OrientedCloud, checked
 
 LEVELS = (0.25, 0.3, 0.4)  # winding numbers; noise outside stays below, tubes of one spacing's radius rise above
 STEP = 1.2  # of the grid, in spacings
 UNDECIDED = (0.1, 0.6)  # winding numbers about the levels, with what they change within a cell
 MAX_CELLS = 1_000_000
+RIM = 1.5  # cells between the points and the first places of the grid
 COARSEST = 2.5  # spacings; on a coarser grid thin parts would be missed
 PROBED = 16384  # points; of larger clouds so many are taken
 
 Grid = np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]
+
+
+@dataclass(frozen=True, eq=False)
+class WindingGrid:
+    """Winding numbers on a grid.
+
+    Attributes
+    ----------
+    values : (i, j, k) float64
+        The winding number at every place, axes as those of the points; nothing is inside at the rim.
+    origin : (3,) float64
+        The first place, in the unit of the points.
+    step : float
+        From place to place, in the same unit.
+    """
+
+    values: Stack
+    origin: Numbers
+    step: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +59,21 @@ class Solid:
         Whether there is an inside to speak of.
     handles : int or None
         How many there are, None where they cannot be told.
+    grid : WindingGrid or None
+        What they were counted on; None where there is no inside to speak of, or too many cells for it.
     """
 
     oriented: OrientedCloud
     trusted: bool
     handles: int | None
+    grid: WindingGrid | None = None
+
+    @cached_property
+    def body(self) -> Body | None:
+        """The cells of the grid inside, None where there is no grid."""
+        if self.grid is None:
+            return None
+        return body_of(self.grid.values, self.grid.origin, self.grid.step, self.oriented.points)
 
 
 def solid_of(surface: OrientedCloud) -> Solid:
@@ -49,7 +81,8 @@ def solid_of(surface: OrientedCloud) -> Solid:
     step = -(-len(surface.points) // PROBED)
     points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
     thinned = checked(OrientedCloud(points, normals, step * surface.areas[::step]), seed=0)
-    return Solid(surface, thinned.trusted, solid_handles(thinned)[0])
+    grid, _ = _grid_of(thinned)
+    return Solid(surface, thinned.trusted, None if grid is None else _handles(grid)[0], grid)
 
 
 def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
@@ -67,6 +100,19 @@ def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
     reason : str
         Why not; empty where they can.
     """
+    grid, reason = _grid_of(surface)
+    return (None, reason) if grid is None else _handles(grid)
+
+
+def _handles(grid: WindingGrid) -> tuple[int | None, str]:
+    found = [betti_numbers(grid.values > level)[1] for level in LEVELS]
+    if len(set(found)) > 1:
+        return None, f"{' or '.join(map(str, sorted(set(found))))} handles, depending on the level of the inside"
+    return found[0], ""
+
+
+def _grid_of(surface: OrientedCloud) -> tuple[WindingGrid | None, str]:
+    """Return winding numbers on a grid, or None and why there is none."""
     if not surface.trusted:
         share = f"{surface.consistency:.0%}"
         return None, f"the normals agree on an inside at {share} of the points only; the cloud is too sparse or open"
@@ -74,11 +120,7 @@ def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
     step = _grid_step(high - low, surface.spacing)
     if step > COARSEST * surface.spacing:
         return None, f"a grid of {MAX_CELLS} cells is too coarse for the spacing of the points; thin the cloud"
-    winding = _winding_grid(surface, low, high, step)
-    found = [betti_numbers(winding > level)[1] for level in LEVELS]
-    if len(set(found)) > 1:
-        return None, f"{' or '.join(map(str, sorted(set(found))))} handles, depending on the level of the inside"
-    return found[0], ""
+    return WindingGrid(_winding_grid(surface, low, high, step), low - RIM * step, step), ""
 
 
 def _grid_step(extent: Numbers, spacing: float) -> float:
@@ -94,7 +136,7 @@ def _winding_grid(surface: OrientedCloud, low: Numbers, high: Numbers, step: flo
     These are the ones near the surface, and those between an inside and an
     outside, as in the holes of a scan; elsewhere it is that of the place before.
     """
-    axes = [np.arange(a - 1.5 * step, b + 2.5 * step, step) for a, b in zip(low, high, strict=True)]
+    axes = [np.arange(a - RIM * step, b + (RIM + 1) * step, step) for a, b in zip(low, high, strict=True)]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     coarse = places[::2, ::2, ::2]
     known = surface.winding_numbers(coarse.reshape(-1, 3)).reshape(coarse.shape[:3])

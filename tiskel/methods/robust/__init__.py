@@ -25,6 +25,7 @@ from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.solid import solid_of
+from tiskel.methods.robust.body import body_curve
 from tiskel.methods.robust.checks import Candidate, radius_sources
 from tiskel.methods.robust.doubts import doubts_of
 from tiskel.methods.robust.fronts import contract_by_fronts, further_front
@@ -40,6 +41,7 @@ from tiskel.timing import Stopwatch
 # Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
 # change with 0.7 and with 1.4 times the value.
 DOUBTFUL = 0.012  # misfit from which on a further front is tried; every one after it needs as much again [0, 1]
+BULKY = 0.04  # misfit and share off the middle from which on the inside of the body is thinned
 CLEARLY = 0.7  # of the misfit so far that another front may leave, to be taken [0, 0; decides on noisy mugs and chairs]
 
 
@@ -79,13 +81,27 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
     best = fitted_curve(network, solid, trace.sections, params)
     if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params), best):
         return thin
+    if best.misfit + best.off_middle >= BULKY:
+        inner = body_curve(network, solid, params)
+        best = inner if inner is not None and _alike(inner, best) and _clearly(inner, best) else best
     for number in range(1, params.extra_fronts + 1):
         if best.misfit < number * DOUBTFUL:
             break
         sections = further_front(network, contracted, params, number)
         other = fitted_curve(network, solid, sections, params)
-        best = other if other.misfit < CLEARLY * best.misfit else best
+        best = other if _clearly(other, best) else best
     return best
+
+
+def _clearly(other: Candidate, best: Candidate) -> bool:
+    """Tell whether another curve is clearly better than the best so far."""
+    return other.misfit + other.off_middle < CLEARLY * (best.misfit + best.off_middle)
+
+
+def _alike(inner: Candidate, best: Candidate) -> bool:
+    """Tell whether a curve from the inside has the components of the best, and its loops where handles are unknown."""
+    known = inner.solid.handles is not None
+    return inner.curve.components == best.curve.components and (known or inner.curve.loops == best.curve.loops)
 
 
 def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:

@@ -30,7 +30,8 @@ TIP_RADIUS = 0.5  # radii of an end: the radius that a new tip starts with, and 
 OFF = 0.25  # local radii off the curve's surface: points beyond may be a missed branch [0, 0; for uneven density]
 OFF_SPACINGS = 1.5  # the same in spacings [1, 0]
 OFF_DEVIATIONS = 4.0  # the same in standard deviations of the fit [0, 0; for dense clouds with noise]
-MISSED = 0.5  # local radii that a missed branch sticks out at least [2, 0]
+MISSED = 0.5  # local radii that a missed branch sticks out at least, unless by its own radius [2, 0]
+MOST = 0.9  # of the points of a missed branch, whose distance from its axis is its radius
 RIDGE = 1.5  # local radii along the curve: longer is the rim of a flat part, no branch [0, 0; for uneven density]
 FEWEST = 12  # points of a missed branch [1, 0]
 
@@ -52,17 +53,17 @@ def without_spurs(curve: ConeCurve, points: Points, sections: Sections) -> ConeC
         curve = without_path(curve, shortest[1])
 
 
-def without_contained_ends(curve: ConeCurve) -> ConeCurve:
+def without_contained_ends(curve: ConeCurve, slack: float = 0.0) -> ConeCurve:
     """Cut ends back to the innermost node whose ball holds the balls of all nodes after it.
 
     The sections of a round cap are such balls; its skeleton ends in the middle
-    of the last full one.
+    of the last full one. slack is how far these balls may stick out besides.
     """
     into = np.arange(len(curve.nodes), dtype=np.int32)
     for path in curve.paths_from(ends=True):
         for last in range(len(path) - 2, 0, -1):
             away = np.linalg.norm(curve.nodes[path[:last]] - curve.nodes[path[last]], axis=1)
-            if (away + curve.radii[path[:last]] <= CONTAINED * curve.radii[path[last]]).all():
+            if (away + curve.radii[path[:last]] <= CONTAINED * curve.radii[path[last]] + slack).all():
                 into[path[:last]] = path[last]
                 break
     return contract_nodes(curve, into)
@@ -150,7 +151,8 @@ def with_missed_branches(
         mine = off[members]
         thick = float(fit.radii[mine].max())
         compact = np.linalg.norm(np.ptp(fit.places[mine], axis=0)) < RIDGE * thick
-        if len(mine) >= FEWEST and fit.residual[mine].max() > MISSED * thick and compact:
+        asked = min(MISSED * thick, _thickness(network.points[fit.rows[mine]], fit.places[mine]))
+        if len(mine) >= FEWEST and fit.residual[mine].max() > asked and compact:
             layer = _layers(fit.residual[mine], params.resolution * network.spacing)
             root = int(np.bincount(fit.nodes[mine][layer == 0]).argmax())
             section[fit.rows[mine]] = len(curve.section_sizes) + layer
@@ -159,6 +161,14 @@ def with_missed_branches(
         return None
     sizes = np.bincount(section[section >= 0], minlength=len(curve.section_sizes)).astype(float)
     return replace(curve, section_sizes=sizes), Sections(section, sections.level)
+
+
+def _thickness(points: Points, feet: Points) -> float:
+    """Return the radius about their middle, across the way out of the curve, that most points (p, 3) lie within."""
+    out = (points - feet).mean(axis=0)
+    out /= max(float(np.linalg.norm(out)), TINY)
+    across = points - points.mean(axis=0)
+    return float(np.quantile(np.linalg.norm(across - np.outer(across @ out, out), axis=1), MOST))
 
 
 def _clusters(network: Network, rows: Indices) -> list[Indices]:

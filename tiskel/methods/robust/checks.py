@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Numbers, Points
+from tiskel.geometry.body import shares_of_depth
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
@@ -20,6 +21,7 @@ from tiskel.methods.trace import Sections
 # how many of the 14 curves of benchmarks/sensitivity.md change with 0.7 and 1.4 times the value.
 PLACES = 200  # on the curve, where winding numbers are asked for [1, 0]
 OUTSIDE_SCORE = 0.4  # winding number below which a place counts against a curve [1, 0]
+OFF_MIDDLE = 0.7  # of the depth that the body has across the curve; places less deep are off its middle
 THIN = 2.0  # spacings in a radius; thinner places say nothing of inside and outside [0, 1]
 FAR = 0.35  # local radii; points further from the cones count against a curve [1, 2]
 SPARSE = 1.5  # spacings in a radius; thinner nodes have too few points [0, 0; what radii are called]
@@ -83,6 +85,18 @@ class Candidate:
         outside = (self.winding < OUTSIDE_SCORE) & thick
         far = np.abs(self.fit.residual) > np.maximum(FAR * self.fit.radii, spacing)
         return off + float(outside.mean()) + (float(far.mean()) if len(far) else 0.0)
+
+    @cached_property
+    def off_middle(self) -> float:
+        """The share of places on the curve that are off the middle of the body, where it is thick enough to tell."""
+        body, curve = self.solid.body, self.curve
+        if body is None or len(curve.edges) == 0:
+            return 0.0
+        between = curve_samples(curve, PLACES)
+        thick = curve.radii[curve.edges[between.edges]].mean(axis=1) > THIN * self.network.spacing
+        told = between.directed & thick
+        deep = shares_of_depth(body, between.points[told], between.directions[told])
+        return float((deep < OFF_MIDDLE).sum()) / len(told)
 
 
 def radius_sources(found: Candidate) -> npt.NDArray[np.uint8]:

@@ -1,8 +1,10 @@
 """A curve of round cones while it is being built, and how its graph is changed."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
+from scipy import sparse
 
 from tiskel.arrays import Edges, Indices, Mask, Numbers, Points, resolved
 from tiskel.geometry.graph import CurveGraph, tidy_edges
@@ -35,6 +37,13 @@ class ConeCurve(CurveGraph):
         owned = self.node_of_section[:-1]
         known = owned >= 0
         return np.asarray(np.bincount(owned[known], self.section_sizes[known], minlength=len(self.nodes)), float)
+
+    @cached_property
+    def averaging(self) -> sparse.csr_array:
+        """The matrix (v, v) that replaces values of nodes by the mean over their neighbours."""
+        first, second = np.concatenate([self.edges, self.edges[:, ::-1]]).T
+        share = 1 / np.maximum(self.degrees, 1)[first]
+        return sparse.coo_array((share, (first, second)), shape=(len(self.nodes), len(self.nodes))).tocsr()
 
     def paths_from(self, *, ends: bool) -> list[Indices]:
         """Return every branch that starts at an end (or at a junction), from there; both ways where both are."""

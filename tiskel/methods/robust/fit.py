@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from tiskel.arrays import TINY, Indices, Lists, Numbers, Pairs, Points, Stack, Table
+from tiskel.arrays import TINY, Indices, Lists, Mask, Numbers, Pairs, Points, Stack, Table
 from tiskel.geometry.solve import BACKENDS
 from tiskel.methods.robust.curve import ConeCurve
 
@@ -27,6 +27,7 @@ from tiskel.methods.robust.curve import ConeCurve
 EVEN = 0.3  # weight of even radii, per node as heavy as its share of the points [14, 14]
 DAMPING = 0.01  # weight against a step of nodes and radii, in the same share [14, 14]
 HOLD = 0.005  # weight that holds a node where the fit began, in the same share [14, 14]
+FIXED = 1e6  # weight that fixes a node, in the same share; any that is large against one
 OUTLYING = 2.0  # standard deviations; residuals beyond count less (Huber) [14, 14]
 MAD = 1.4826  # of the median absolute deviation: standard deviation of a normal distribution, by definition [14, 14]
 HOPS = 2  # edges so near to a point's own node may be its edge [11, 4]
@@ -84,11 +85,13 @@ class ConeFit:
         return np.asarray(self.curve.edges[self.edge, (self.share > 0.5).astype(int)])
 
 
-def fit_cones(curve: ConeCurve, points: Points, section: Indices, *, rounds: int, straightness: float) -> ConeFit:
+def fit_cones(
+    curve: ConeCurve, points: Points, section: Indices, *, rounds: int, straightness: float, fixed: Mask | None = None
+) -> ConeFit:
     """Return the curve fitted to the points (n, 3) of the cloud, and their foot points.
 
     section (n,) is the section of each point; straightness the weight that
-    holds a node between its two neighbours.
+    holds a node between its two neighbours; fixed (v,) nodes stay where they are.
     """
     if len(curve.edges) == 0:
         none = np.zeros(0)
@@ -100,7 +103,7 @@ def fit_cones(curve: ConeCurve, points: Points, section: Indices, *, rounds: int
     curve = replace(curve, radii=np.maximum(curve.radii, thinnest))
     for _ in range(rounds):
         found = foot_points(curve, points, rows, owner[rows], nearby, radial=True)
-        step = _step(found, points, start, straightness)
+        step = _step(found, points, start, straightness, fixed)
         length = np.linalg.norm(step[:, :3], axis=1)
         within = np.minimum(1, STEP * curve.radii / np.maximum(length, TINY))
         least = np.maximum(SHRINK * curve.radii, thinnest)
@@ -144,12 +147,14 @@ def foot_points(
     return ConeFit(curve, tables[0], edge, share, residual)
 
 
-def _step(fit: ConeFit, points: Points, start: Points, straightness: float) -> Table:
+def _step(fit: ConeFit, points: Points, start: Points, straightness: float, fixed: Mask | None) -> Table:
     """Return (v, 4) the Gauss-Newton step of nodes and radii."""
     count = len(fit.curve.nodes)
     heavy = len(fit.rows) / count
     terms = [_data(fit, points), *_smoothness(fit.curve, heavy, straightness)]
     held = np.tile([DAMPING + HOLD] * 3 + [DAMPING], count) * heavy
+    if fixed is not None:
+        held.reshape(count, 4)[fixed, :3] = FIXED * heavy
     matrix = sparse.diags_array(held, format="csc")
     right = np.zeros(4 * count)
     right.reshape(count, 4)[:, :3] = HOLD * heavy * (start - fit.curve.nodes)

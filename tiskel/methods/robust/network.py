@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Points, Table
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
-from tiskel.geometry.oriented import OrientedCloud
+from tiskel.geometry.oriented import OrientedCloud, oriented_either_way
 from tiskel.geometry.rings import Rings
 from tiskel.geometry.spacing import spacings_from
 
@@ -93,9 +93,14 @@ class Network:
         return Rings(members, sizes, np.zeros_like(sizes))
 
     def oriented(self, contracted: Points) -> OrientedCloud:
-        """Return the cloud with normals away from where the points (n, 3) contract to."""
-        outward = np.einsum("ij,ij->i", self.points - contracted, self.normals)
-        return OrientedCloud(self.points, self.normals * np.where(outward < 0, -1.0, 1.0)[:, None], self.areas)
+        """Return the cloud with normals away from where the points (n, 3) contract to, or with propagated ones.
+
+        The latter where these have as many points between an inside and an
+        outside: points of a bulky body hardly contract.
+        """
+        near = np.ascontiguousarray(self.neighbours[:, :NORMAL_NEIGHBOURS])
+        away, propagated = oriented_either_way(self.points, self.normals, self.areas, contracted, near)
+        return away if away.consistency > propagated.consistency else propagated
 
 
 def own_axes(points: Points) -> Table:

@@ -69,8 +69,8 @@ def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
     taken: set[int] = set()
     met: list[tuple[int, int]] = []
     nearest = sorted((apart, end, node) for end, (apart, node) in found.items())
-    for _, one, other in nearest:
-        if one not in taken and other not in taken:
-            met.append((one, other))
-            taken |= {one} | ({other} if curve.degrees[other] == 1 else set())
+    for _, end, meets in nearest:
+        if end not in taken and meets not in taken:
+            met.append((end, meets))
+            taken |= {end} | ({meets} if curve.degrees[meets] == 1 else set())
     return np.array(met, np.int32).reshape(-1, 2)
