@@ -68,7 +68,7 @@ def curve(trace: Trace, params: RobustParams) -> MethodCurve:
             break
         sections = further_front(network, contracted, params, number)
         other = fitted_curve(network, solid, sections, params)
-        best = other if other.misfit < CLEARLY * best.misfit else best
+        best = other if other.score < CLEARLY * best.score else best
     return _translated(best, trace, network)
 
 
