@@ -19,8 +19,9 @@ from tiskel.methods.robust.branches import (
     without_explained_branch,
     without_spurs,
 )
-from tiskel.methods.robust.bridges import bridged, open_ends
+from tiskel.methods.robust.bridges import bridged
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes, keeps_loops
+from tiskel.methods.robust.ends import open_ends
 from tiskel.methods.robust.fit import ConeFit, fit_cones
 from tiskel.methods.robust.junctions import merged_junctions, placed_junctions
 from tiskel.methods.robust.network import neighbour_network

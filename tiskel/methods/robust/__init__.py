@@ -95,7 +95,7 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
 
 def _clearly(other: Candidate, best: Candidate) -> bool:
     """Tell whether another curve is clearly better than the best so far."""
-    return other.misfit + other.off_middle < CLEARLY * (best.misfit + best.off_middle)
+    return other.score + other.off_middle < CLEARLY * (best.score + best.off_middle)
 
 
 def _alike(inner: Candidate, best: Candidate) -> bool:

@@ -1,6 +1,6 @@
 """Whether a curve is right: the score that fronts compete by, and what its radii are worth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.body import shares_of_depth
-from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 from tiskel.geometry.solid import Solid
@@ -23,6 +23,7 @@ PLACES = 200  # on the curve, where winding numbers are asked for [1, 0]
 OUTSIDE_SCORE = 0.4  # winding number below which a place counts against a curve [1, 0]
 OFF_MIDDLE = 0.7  # of the depth that the body has across the curve; places less deep are off its middle
 THIN = 2.0  # spacings in a radius; thinner places say nothing of inside and outside [0, 1]
+UNSURE = 0.05  # misfit that a loop over a gap is worth where the body has no handle [0, 0; for patches]
 FAR = 0.35  # local radii; points further from the cones count against a curve [1, 2]
 SPARSE = 1.5  # spacings in a radius; thinner nodes have too few points [0, 0; what radii are called]
 
@@ -62,9 +63,25 @@ class Candidate:
         curve = self.curve
         if len(curve.edges) == 0:
             return curve.nodes, curve.radii
-        between = curve_samples(curve, PLACES)
+        between = self._between
         radii = curve.radii[curve.edges[between.edges]].mean(axis=1)
         return np.concatenate([curve.nodes, between.points]), np.concatenate([curve.radii, radii])
+
+    @cached_property
+    def _between(self) -> CurveSamples:
+        return curve_samples(self.curve, PLACES)
+
+    @property
+    def _measured_loops(self) -> int:
+        """Loops without the bridges."""
+        return replace(self.curve, edges=self.curve.edges[~self.curve.bridged], bridged=np.zeros(0, np.bool_)).loops
+
+    @property
+    def score(self) -> float:
+        """The misfit, and a little for every loop that only bridges make, where the body has none."""
+        known = self.curve.loops if self.solid.handles is None else self.solid.handles
+        loops = min(self.curve.loops - known, self.curve.loops - self._measured_loops)
+        return self.misfit + UNSURE * max(loops, 0)
 
     @cached_property
     def winding(self) -> Numbers:
@@ -72,16 +89,26 @@ class Candidate:
         return self.solid.oriented.winding_numbers(self.places[0])
 
     @cached_property
+    def measured(self) -> npt.NDArray[np.bool_]:
+        """Which places (q,) are on what was measured; on bridges the scan says nothing of inside and outside."""
+        curve = self.curve
+        nodes = np.isin(np.arange(len(curve.nodes)), curve.edges[curve.bridged], invert=True)
+        return nodes if len(curve.edges) == 0 else np.concatenate([nodes, ~curve.bridged[self._between.edges]])
+
+    @cached_property
     def misfit(self) -> float:
         """The share of places on the curve outside the body and of points far from its cones.
 
-        And one for every loop more or less than the body has handles. Where the
-        body is as thin as the points are apart, or where there is no inside to
-        speak of, nothing is said of inside and outside.
+        And one for every loop more or less than the body has handles; loops that
+        close over gaps may be handles or not. Where the body is as thin as the
+        points are apart, where there is no inside to speak of, and on bridges,
+        nothing is said of inside and outside.
         """
-        off = 0 if self.solid.handles is None else abs(self.curve.loops - self.solid.handles)
+        known, off = self.solid.handles, 0
+        if known is not None:
+            off = max(known - self.curve.loops, self._measured_loops - known, 0)
         spacing = self.network.spacing
-        thick = (self.places[1] > THIN * spacing) & self.solid.trusted
+        thick = (self.places[1] > THIN * spacing) & self.measured & self.solid.trusted
         outside = (self.winding < OUTSIDE_SCORE) & thick
         far = np.abs(self.fit.residual) > np.maximum(FAR * self.fit.radii, spacing)
         return off + float(outside.mean()) + (float(far.mean()) if len(far) else 0.0)

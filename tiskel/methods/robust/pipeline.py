@@ -12,6 +12,7 @@ from tiskel.methods.robust.bridges import bridged
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.cycles import without_filled_cycles
+from tiskel.methods.robust.ends import with_stubs
 from tiskel.methods.robust.fit import ConeFit, fit_cones
 from tiskel.methods.robust.junctions import merged_junctions, placed_junctions
 from tiskel.methods.robust.network import Network
@@ -53,5 +54,6 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
         if longer is None:
             break
         found = fit(longer, again + 1)
-    curve, gaps = bridged(found.curve, network, sections, params.bridge_gaps)
+    curve = with_stubs(found.curve, network, sections)
+    curve, gaps = bridged(curve, network, sections, params.bridge_gaps)
     return Candidate(fit(curve, 0), sections, network, solid, gaps)
