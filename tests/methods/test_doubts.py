@@ -7,10 +7,12 @@ import pytest
 
 from tiskel import CurveGraph, CurveWarning, ShapeParams, contract, evaluate, extract_skeleton, make_shape, shape_graph
 from tiskel.arrays import Points
+from tiskel.gallery.trees import tree
 from tiskel.geometry.doubt import UNKNOWN, warning_from
 from tiskel.geometry.graph import tidy_edges
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
+from tiskel.geometry.round_cones import sample_union
 from tiskel.geometry.solid import solid_of
 from tiskel.methods.robust.doubts import doubts_of
 from tiskel.methods.robust.judged import Judged
@@ -144,6 +146,19 @@ def test_a_curve_beside_a_leaf_is_wrong_and_one_on_it_is_noted() -> None:
     upon = codes(judged(leaf(), spine(0.0, Regime.SHEET)))
     assert "warning" not in upon.values()
     assert {"flat", "one-sided"} <= set(upon)
+
+
+@pytest.mark.parametrize("count", [2500, 20000])
+def test_the_true_curve_of_a_tree_of_twigs_is_thin_and_nothing_else(count: int) -> None:
+    """At 2500 points all of it is thinner than they are apart, at 20 000 the trunk is a tube."""
+    shape = tree("leader", tips=30, seed=2)
+    cloud = sample_union(shape, count, np.random.default_rng(2))
+    j = judged(cloud, dense(shape, 0.15))
+    bounded = j.graph.radii < 1.5 * j.spacing
+    sources = np.where(bounded, RadiusSource.BOUNDED, RadiusSource.MEASURED).astype(np.uint8)
+    for regime in (Regime.WIRE, Regime.TUBE):
+        regimes = np.where(bounded, regime, Regime.TUBE).astype(np.uint8)
+        assert set(codes(replace(j, graph=replace(j.graph, radius_sources=sources, regimes=regimes)))) == {"thin"}
 
 
 def test_bridges_bounds_and_dust_are_notes_until_they_are_much() -> None:

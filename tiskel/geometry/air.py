@@ -43,7 +43,7 @@ class Air:
     distance : (q,) float64
         How far each is from the nearest point, in the unit of the curve.
     weight : (q,) float64
-        The share of the curve's length that each stands for; 0 for a curve without length.
+        The length of the curve that each stands for, in its unit.
     """
 
     places: Mask
@@ -56,8 +56,9 @@ class Air:
         return self.share_of(np.ones_like(self.places)) if self.weight.any() else None
 
     def share_of(self, places: Mask) -> float:
-        """Return the share of the curve's length that is in the air at some of the places (q,)."""
-        return float(self.weight[self.places & places].sum())
+        """Return the share of the curve's length that is in the air at some of the places (q,), 0 without length."""
+        total = float(self.weight.sum())
+        return float(self.weight[self.places & places].sum()) / total if total > 0 else 0.0
 
 
 def in_the_air(
@@ -115,7 +116,7 @@ def in_the_air(
     slab = np.maximum(HALF_SLAB * spacing, 0.0 if half is None else half)
     for rows in np.array_split(np.flatnonzero(air), -(-int(air.sum()) // BLOCK) or 1):
         air[rows] = widest_gaps(samples.points[rows], along[rows], slab[rows], cloud) >= SURROUNDED
-    return Air(air, np.asarray(distance), length_weights(curve, samples))
+    return Air(air, np.asarray(distance), lengths_of(curve, samples))
 
 
 def widest_gaps(places: Points, directions: Points, half: Numbers, cloud: Points) -> Numbers:
@@ -152,9 +153,7 @@ def widest_gaps(places: Points, directions: Points, half: Numbers, cloud: Points
     return np.asarray(np.minimum(np.maximum(inner, whole), 2 * np.pi))
 
 
-def length_weights(curve: CurveGraph, samples: CurveSamples) -> Numbers:
-    """Return (q,) the share of a curve's length that each place on it stands for; zeros for a curve without length."""
+def lengths_of(curve: CurveGraph, samples: CurveSamples) -> Numbers:
+    """Return (q,) the length that each place on a curve stands for, in its unit; all of an edge's make up the edge."""
     each = np.bincount(samples.edges, minlength=len(curve.edges))
-    length = (curve.lengths / np.maximum(each, 1))[samples.edges]
-    total = float(length.sum())
-    return length / total if total > 0 else np.zeros_like(length)
+    return np.asarray((curve.lengths / np.maximum(each, 1))[samples.edges])

@@ -85,7 +85,7 @@ def _in_air(j: Judged) -> CurveWarning | None:
 
 
 def _outside(j: Judged) -> CurveWarning | None:
-    if not j.thick:
+    if j.thick.mean() <= levels.OUTSIDE_SHARE:
         return None
     step = -(-len(j.points) // levels.SURFACE_POINTS)
     points, contracted = (np.ascontiguousarray(rows[::step]) for rows in (j.points, j.contracted))
@@ -93,9 +93,7 @@ def _outside(j: Judged) -> CurveWarning | None:
     inside = places_inside(surface, j.samples.points)
     if inside is None or (~inside).mean() <= levels.OUTSIDE_SHARE:
         return None
-    clearly = (surface.winding_numbers(j.samples.points) < levels.CLEARLY_OUTSIDE) & (
-        j.sample_radii > levels.THICK * j.spacing
-    )
+    clearly = (surface.winding_numbers(j.samples.points) < levels.CLEARLY_OUTSIDE) & j.thick
     if clearly.mean() <= levels.OUTSIDE_SHARE:
         return None
     text = "{share} of the curve lies outside the body"

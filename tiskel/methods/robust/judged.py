@@ -61,6 +61,6 @@ class Judged:
         return np.asarray(self.graph.radii[self.graph.edges[self.samples.edges]].mean(axis=1))
 
     @cached_property
-    def thick(self) -> bool:
-        """Whether some of the body is thick enough to speak of inside and outside."""
-        return bool((self.graph.radii > levels.THICK * self.spacing).any())
+    def thick(self) -> Mask:
+        """(q,) at which of these places the body is thick enough to speak of inside and outside."""
+        return np.asarray(self.sample_radii > levels.THICK * self.spacing)

@@ -6,6 +6,8 @@ from tiskel.arrays import Indices, Mask, Points
 from tiskel.geometry.curve import vertex_tangents
 from tiskel.geometry.frames import across, unit
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 
 FEWEST = 8  # points that say on which sides of a node there are some
 ONE_SIDE = np.deg2rad(200.0)  # radians without points about a node, from which on it was seen from one side
@@ -28,11 +30,14 @@ def flat_points(graph: CurveGraph, normals: Points, node_of_point: Indices, flat
     Returns
     -------
     (n,) bool
+        False at wires, at nodes whose radius is a bound and at those with fewer than 8 points: normals mean nothing.
     """
+    told = np.bincount(node_of_point, minlength=len(graph.nodes)) >= FEWEST
+    told &= (graph.regimes != Regime.WIRE) & (graph.radius_sources != RadiusSource.BOUNDED)
     scatter = np.zeros((len(graph.nodes), 3, 3))
     np.add.at(scatter, node_of_point, normals[:, :, None] * normals[:, None, :])
     _, second, most = np.linalg.eigvalsh(scatter).T
-    return np.asarray((second < flat * most)[node_of_point])
+    return np.asarray((told & (second < flat * most))[node_of_point])
 
 
 def one_sided_nodes(graph: CurveGraph, points: Points, node_of_point: Indices) -> Mask:
