@@ -51,7 +51,9 @@ def _facts(source: Any) -> dict[str, Any]:
         return {"file": source.name, "stage": stage, "skeleton": counts, "cloud": _extent(s.cloud)}
     cloud = parse_cloud(data, source)
     properties = {"properties": sorted(cloud.properties)} if cloud.properties else {}
-    return {"file": cloud.name, "cloud": _extent(cloud.points) | properties, "warnings": list(cloud.warnings)}
+    mesh = {"mesh": cloud.mesh.as_dict()} if cloud.mesh else {}
+    said = {"warnings": list(cloud.warnings), "notes": list(cloud.notes)}
+    return {"file": cloud.name, **mesh, "cloud": _extent(cloud.points) | properties, **said}
 
 
 def _surface_facts(data: bytes, source: Any) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """The stage ``contract``: a cloud in, a contracted cloud out, with the record of how."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,16 +11,17 @@ from tiskel.arrays import (
     Frame,
     Indices,
     Mask,
-    Numbers,
     Points,
     Stack,
     as_points,
+    as_weights,
     check_solid,
     finite_rows,
     first_of_duplicates,
     normalisation,
 )
 from tiskel.errors import TiskelError
+from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.rings import Rings
 from tiskel.geometry.strays import stray_points
 from tiskel.methods import METHODS
@@ -63,6 +64,8 @@ class Contraction:
     sections : Sections or None
         By robust: the section that each point belongs to, a connected piece of what the last front passed in one bin
         of distance, and the number of the bin. None by the others.
+    surface : MeshSurface or None
+        By robust, of points on a mesh: what it knows about each of ``points``.
     prepared : object
         What the method worked out about the cloud, so that the curve need not do it again; not in files.
     ring_seconds : float
@@ -90,6 +93,7 @@ class Contraction:
     params: ContractionParams
     rings: Rings | None = None
     sections: Sections | None = None
+    surface: MeshSurface | None = None
     prepared: Any = field(default=None, repr=False)
     ring_seconds: float = 0.0
 
@@ -123,14 +127,16 @@ class Contraction:
             status=self.status,
             rings=self.rings,
             sections=self.sections,
+            surface=self.surface,
             prepared=self.prepared,
         )
         return trace, frame
 
 
 def contract(
-    points: npt.ArrayLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None
-) -> Contraction:
+    points: npt.ArrayLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None,
+    surface: MeshSurface | None = None,
+) -> Contraction:  # fmt: skip
     """Contract a cloud towards its medial curve.
 
     Methods: "robust", by fronts over the original cloud (:mod:`tiskel.methods.robust.fronts`),
@@ -147,6 +153,8 @@ def contract(
     weights : (n,) positive, for lbc and gls: what W_L is multiplied by at each
         point. Thick parts contract more slowly; one weight for each semantic part
         evens that out (S-LBC, Meyer et al. 2023).
+    surface : what is known of the mesh that the points lie on, a row for each, see
+        :class:`tiskel.geometry.mesh_surface.MeshSurface`; ``load_cloud`` gives it. Only robust uses it.
 
     Returns
     -------
@@ -178,26 +186,16 @@ def contract(
     distinct = np.flatnonzero((first == np.arange(len(cloud))) & ~stray).astype(np.int32)
     check_solid(cloud[distinct])
     frame = normalisation(cloud[distinct], params.normalise)
-    chosen = None if weights is None else _weights(weights, len(every))[finite][distinct]
-    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen)
+    chosen = None if weights is None else as_weights(weights, len(every))[finite][distinct]
+    known = None if surface is None else surface.checked(len(every)).at(input_rows[distinct])
+    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen, known)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
     warnings = _warnings(len(every) - len(cloud), int((~stray).sum()) - len(distinct), trace.status)
     if stray.any():
         first[stray] = distinct[cKDTree(cloud[distinct]).query(cloud[stray])[1]]
+    trace = replace(trace, surface=known if trace.sections is not None else None)
     return _assembled(trace, frame, cloud, input_rows, first, distinct, warnings, params)
-
-
-def _weights(weights: npt.ArrayLike, count: int) -> Numbers:
-    values = np.asarray(weights, dtype=np.float64)
-    if values.shape != (count,):
-        raise TiskelError(
-            f"weights must be one number for each of the {count} points, got shape {values.shape}; "
-            "leave out what changes the number of points"
-        )
-    if not (np.isfinite(values) & (values > 0)).all():
-        raise TiskelError("weights must be positive and finite; 1 leaves a point as it is")
-    return values
 
 
 def _warnings(dropped: int, duplicates: int, status: Status) -> tuple[str, ...]:
@@ -236,6 +234,7 @@ def _assembled(
         params=params,
         rings=trace.rings,
         sections=trace.sections,
+        surface=trace.surface,
         prepared=trace.prepared,
         ring_seconds=trace.ring_seconds,
     )

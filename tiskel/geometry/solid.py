@@ -44,12 +44,15 @@ class Solid:
     handles: int | None
 
 
-def solid_of(surface: OrientedCloud) -> Solid:
-    """Return the solid inside an oriented cloud; of a large one, what a part of its points says."""
+def solid_of(surface: OrientedCloud, handles: int | None = None) -> Solid:
+    """Return the solid inside an oriented cloud, with its handles where a mesh knows them.
+
+    Of a large cloud, what a part of its points says.
+    """
     step = -(-len(surface.points) // PROBED)
     points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
     thinned = checked(OrientedCloud(points, normals, step * surface.areas[::step]), seed=0)
-    return Solid(surface, thinned.trusted, solid_handles(thinned)[0])
+    return Solid(surface, thinned.trusted, solid_handles(thinned)[0] if handles is None else handles)
 
 
 def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:

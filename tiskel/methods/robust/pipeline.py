@@ -53,5 +53,6 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
         if longer is None:
             break
         found = fit(longer, again + 1)
-    curve, gaps = bridged(found.curve, network, sections, params.bridge_gaps)
+    widest = params.bridge_gaps if network.surface is None else 0  # a mesh knows what is connected
+    curve, gaps = bridged(found.curve, network, sections, widest)
     return Candidate(fit(curve, 0), sections, network, solid, gaps)
