@@ -141,3 +141,11 @@ def test_the_chain_of_commands(tiskel: Runner, near: Path) -> None:
         refused = tiskel(*words, "--sample", "many")
         assert refused.returncode == 1
         assert b"--sample needs auto or a number of points, got 'many'" in refused.stderr
+
+
+def test_the_file_of_the_report_has_five_cylinders(cases_folder: Path) -> None:
+    cloud = load_cloud(cases_folder / "five_cylinders.stl")
+    assert cloud.mesh is not None
+    assert cloud.mesh.components == 5
+    s = extract_skeleton(contract(cloud.points, surface=cloud.surface))
+    assert (s.components, s.loops, s.ends) == (5, 0, 10)

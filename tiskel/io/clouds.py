@@ -77,7 +77,7 @@ def load_cloud(source: str | Path, *, mesh_samples: int | None = None, seed: int
     Parameters
     ----------
     source : str or Path
-        A path (PLY, XYZ, PTS, CSV, TXT, NPY, NPZ, PCD, OFF, OBJ; STL through Open3D; each also packed by gzip), or "-"
+        A path (PLY, XYZ, PTS, CSV, TXT, NPY, NPZ, PCD, OFF, OBJ, STL; each also packed by gzip), or "-"
         for standard input, where PLY, NPY, NPZ, PCD, OFF and text tell themselves apart.
     mesh_samples : int, optional
         Points to sample a mesh to; without it as many as its thickness asks for, 4096 to 32768.
