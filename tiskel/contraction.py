@@ -127,7 +127,7 @@ class Contraction:
             status=self.status,
             rings=self.rings,
             sections=self.sections,
-            surface=self.surface,
+            surface=self.surface and self.surface.scaled(frame.scale),
             prepared=self.prepared,
         )
         return trace, frame
@@ -188,7 +188,8 @@ def contract(
     frame = normalisation(cloud[distinct], params.normalise)
     chosen = None if weights is None else as_weights(weights, len(every))[finite][distinct]
     known = None if surface is None else surface.checked(len(every)).at(input_rows[distinct])
-    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen, known)
+    scaled = known and known.scaled(frame.scale)
+    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen, scaled)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
     warnings = _warnings(len(every) - len(cloud), int((~stray).sum()) - len(distinct), trace.status)

@@ -150,6 +150,7 @@ def test_points_lie_on_the_mesh_and_normals_point_out() -> None:
     assert np.abs(np.linalg.norm(out, axis=1) - 0.25).max() < 0.25 * 0.009 + 1.25 * 0.0013
     cosine = np.einsum("ij,ij->i", known(found).normals, out / np.linalg.norm(out, axis=1, keepdims=True))
     assert cosine.min() > 0.95
+    assert known(found).areas.sum() == pytest.approx(4 * np.pi**2 * 0.25, rel=0.01)
     assert known(found).outward
     assert known(found).handles == 1
 
@@ -228,6 +229,7 @@ def test_what_is_known_follows_the_rows(near: SampledMesh) -> None:
     rows = np.arange(0, len(near.points), 3, dtype=np.int32)
     part = surface.at(rows)
     np.testing.assert_array_equal(part.normals, surface.normals[rows])
+    np.testing.assert_array_equal(part.scaled(3.0).areas, 9 * surface.areas[rows])
     assert {tuple(pair) for pair in rows[part.links].tolist()} <= {tuple(pair) for pair in surface.links.tolist()}
     assert still_on(surface, near.points.copy(), near.points) is surface
     assert still_on(surface, near.points[1:], near.points) is None

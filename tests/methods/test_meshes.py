@@ -74,7 +74,7 @@ def test_a_stage_file_keeps_what_the_mesh_knows(tmp_path: Path) -> None:
     again = read_contraction(tmp_path / "c.ply")
     assert c.surface is not None
     assert again.surface is not None
-    for name in ("normals", "links"):
+    for name in ("normals", "areas", "links"):
         assert getattr(again.surface, name).tobytes() == getattr(c.surface, name).tobytes()
     assert (again.surface.outward, again.surface.handles) == (True, 0)
     one, other = extract_skeleton(c), extract_skeleton(again)

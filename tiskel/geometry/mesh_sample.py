@@ -109,7 +109,8 @@ def sample_mesh(vertices: Points, faces: Edges, count: int | None = None, seed: 
     points, rows = _placed(fine, 1 / spacing**2, number, seed)
     links = _links(fine, points, rows)
     normals = _averaged(fine.normals[rows], links)
-    surface = MeshSurface(normals, links, facts.watertight, facts.handles if facts.watertight else None)
+    areas = spacing[rows] ** 2 * mesh.areas.sum() / (spacing[rows] ** 2).sum()
+    surface = MeshSurface(normals, areas, links, facts.watertight, facts.handles if facts.watertight else None)
     return SampledMesh(points, surface if _hangs_together(mesh) else None, facts, wanted)
 
 

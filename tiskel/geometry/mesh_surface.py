@@ -1,12 +1,12 @@
 """What a mesh knows about points on it: which way is out, what hangs together, how many handles there are."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from tiskel.arrays import Edges, Indices, Lists, Masks, Points
+from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Points
 from tiskel.errors import TiskelError
 
 HOPS = 3  # cells of other points, at most, between two that are neighbours; as far as thirty nearest reach
@@ -20,6 +20,8 @@ class MeshSurface:
     ----------
     normals : (n, 3) float64
         Of unit length.
+    areas : (n,) float64
+        Of the mesh that each stands for, in the squared unit of the points.
     links : (l, 2) int32
         Points whose cells touch: every place of the mesh belongs to the point that is nearest along the mesh.
     outward : bool
@@ -29,6 +31,7 @@ class MeshSurface:
     """
 
     normals: Points
+    areas: Numbers
     links: Edges
     outward: bool
     handles: int | None
@@ -44,7 +47,12 @@ class MeshSurface:
         place = np.full(len(self.normals), -1, np.int32)
         place[rows] = np.arange(len(rows), dtype=np.int32)
         links = place[self.links]
-        return MeshSurface(self.normals[rows], links[(links >= 0).all(axis=1)], self.outward, self.handles)
+        kept = links[(links >= 0).all(axis=1)]
+        return replace(self, normals=self.normals[rows], areas=self.areas[rows], links=kept)
+
+    def scaled(self, factor: float) -> "MeshSurface":
+        """Return the same of points whose lengths are multiplied by a factor."""
+        return replace(self, areas=self.areas * factor**2)
 
     def linked(self, neighbours: Lists) -> Masks:
         """Return (n, k) which neighbours (n, k) are a few cells away along the mesh, the points themselves among them.

@@ -3,13 +3,13 @@
 Elements: ``vertex``, the contracted points, each with its original position (x0
 y0 z0) and its row in ``cloud``; by lbc and gls also with the end of its ring in
 ``ring_member`` and whether it is closed (its last member connects to the first),
-by robust with its section and level, and, of points on a mesh, with the normal of
-the mesh; ``surface_link``, points whose cells on that mesh touch; ``ring_member``, the members of all rings one
-after the other, by place in ``vertex``; ``cloud``, every finite input point with
-its row in the input, the row of ``cloud`` it was merged into and the step of that
-(-1: it is left; step 0: a duplicate, or a stray
-point); ``history``, where it was asked for, the
-positions of the points that are left after each step, step by step.
+by robust with its section and level, and, of points on a mesh, with the normal
+and the area of the mesh; ``surface_link``, points whose cells on that mesh touch;
+``ring_member``, the members of all rings one after the other, by place in
+``vertex``; ``cloud``, every finite input point with its row in the input, the row
+of ``cloud`` it was merged into and the step of that (-1: it is left; step 0: a
+duplicate, or a stray point); ``history``, where it was asked for, the positions of
+the points that are left after each step, step by step.
 
 Format 1, which is still read, has a list property ``ring`` in ``vertex``, the
 history always, and the neighbours of robust as rings.

@@ -12,8 +12,8 @@ LINKS = "surface_link"
 
 
 def surface_columns(surface: MeshSurface | None) -> dict[str, Any]:
-    """Return the columns of the points: the mesh's normals, nothing without a mesh."""
-    return {} if surface is None else ply.xyz(surface.normals, NORMAL)
+    """Return the columns of the points: normals and areas of the mesh, nothing without one."""
+    return {} if surface is None else {**ply.xyz(surface.normals, NORMAL), "area": surface.areas}
 
 
 def surface_elements(surface: MeshSurface | None) -> list[Any]:
@@ -39,4 +39,5 @@ def surface_from(file: Any, facts: Any) -> MeshSurface | None:
         raise ValueError(f"{LINKS} names point {pairs.max()} of {len(vertex)}")
     handles = facts["mesh"]["handles"]
     known = None if handles is None else int(handles)
-    return MeshSurface(ply.points_of(vertex, NORMAL), pairs, bool(facts["mesh"]["outward"]), known)
+    areas = np.array(vertex["area"], np.float64)
+    return MeshSurface(ply.points_of(vertex, NORMAL), areas, pairs, bool(facts["mesh"]["outward"]), known)

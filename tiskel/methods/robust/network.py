@@ -47,8 +47,8 @@ class Network:
     lengths : (e,) float64
         How long they are.
     surface : MeshSurface or None
-        What the mesh knows that the points lie on; then the normals are its own, and what it does not link is no
-        neighbour.
+        What the mesh knows that the points lie on; then normals and areas are its own, and what it does not link is
+        no neighbour.
     """
 
     axes: Table
@@ -146,7 +146,7 @@ def neighbour_network(
         kept &= surface.linked(neighbours)
     edges, edge_lengths = _edges(neighbours, kept, lengths)
     own = np.eye(3) if axes is None else axes
-    areas = np.pi * squares[:, disc] / disc
+    areas = np.pi * squares[:, disc] / disc if surface is None else surface.areas
     return Network(own, points, normals, areas, spacings, neighbours, kept, edges, edge_lengths, surface)
 
 
