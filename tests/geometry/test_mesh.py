@@ -236,3 +236,27 @@ def test_what_is_known_follows_the_rows(near: SampledMesh) -> None:
     assert still_on(None, near.points, near.points) is None
     with pytest.raises(TiskelError, match="sample it again"):
         surface.checked(3)
+
+
+def test_what_lies_inside_another_part_is_no_surface() -> None:
+    """A tube that enters another: of it a tenth, and of the other a disc, are hidden."""
+    mesh = joined(tube([0, 0, 0], [0, 0, 5], 0.3, 48), tube([0, 0, 2.5], [3, 0, 2.5], 0.2, 48))
+    found = sample_mesh(*mesh, 4000)
+    inside_one = (np.hypot(*found.points[:, :2].T) < 0.28) & (found.points[:, 2] > 0.1) & (found.points[:, 2] < 4.9)
+    inside_other = (np.hypot(found.points[:, 1], found.points[:, 2] - 2.5) < 0.18) & (found.points[:, 0] > 0.1)
+    inside_other &= found.points[:, 0] < 2.9
+    assert inside_one.sum() == 0
+    assert inside_other.sum() == 0
+    assert found.hidden == 4000 - len(found.points) > 200
+    assert parts_of(known(found))[0] == 1
+    assert known(found).handles is None
+
+
+def test_parts_that_only_touch_hide_nothing(near: SampledMesh) -> None:
+    assert near.hidden == 0
+    beside = joined(boxes(np.ones((3, 3, 3), bool)), (boxes(np.ones((3, 3, 3), bool))[0] + [3, 0.5, 0.5], boxes(
+        np.ones((3, 3, 3), bool))[1]))  # fmt: skip
+    assert sample_mesh(*beside, 3000).hidden == 0
+    hollow = sample_mesh(*boxes(HOLLOW), 3000)
+    assert hollow.hidden == 0
+    assert known(hollow).handles == 0

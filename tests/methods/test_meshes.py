@@ -25,6 +25,9 @@ from tiskel.methods.robust.network import prepared
 NEAR = joined(tube([0, 0, 0], [0, 0, 5], 0.3, 48), tube([0.602, 0, 0], [0.602, 0, 5], 0.3, 48))
 UNEVEN = joined(tube([0, 0, 0], [0, 0, 5], 1.0), tube([0, 0, 6], [0, 0, 11], 0.1))
 FIVE = joined(*(tube([3 * i, 0, 0], [3 * i, 0, 4 + i], 0.3 + 0.1 * i) for i in range(5)))
+CROSSED = joined(tube([0, 0, 0], [0, 0, 5], 0.3), tube([0, 0, 3], [3, 0, 4], 0.2), tube([0, 0, 1], [0, 3, 2], 0.15))
+CORNERS = ((0, 0, 3, 0), (3, 0, 3, 3), (3, 3, 0, 3), (0, 3, 0, 0))
+RING = joined(*(tube([a, b, 0], [c, d, 0], 0.25) for a, b, c, d in CORNERS))
 KNOWN = {  # components, loops, ends
     "torus": (torus(), (1, 1, 0)),
     "thin torus": (torus(1.0, 0.06, 96, 12), (1, 1, 0)),
@@ -32,6 +35,8 @@ KNOWN = {  # components, loops, ends
     "two tubes that nearly touch": (NEAR, (2, 0, 4)),
     "a thin tube before a thick one": (UNEVEN, (2, 0, 4)),
     "an open tube": (tube([0, 0, 0], [0, 0, 5], 0.3, caps=False), (1, 0, 2)),
+    "tubes that run into each other": (CROSSED, (1, 0, 4)),
+    "a ring of four tubes that overlap": (RING, (1, 1, 0)),
     "five cylinders": (FIVE, (5, 0, 10)),
 }
 

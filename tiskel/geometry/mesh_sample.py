@@ -16,12 +16,13 @@ from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Edges, Indices, Numbers, Pairs, Points, diagonal
+from tiskel.arrays import TINY, Edges, Indices, Numbers, Points, diagonal
 from tiskel.errors import TiskelError
-from tiskel.geometry.mesh import TriangleMesh, pair_keys, welded
+from tiskel.geometry.mesh import TriangleMesh, welded
 from tiskel.geometry.mesh_facts import MeshFacts, facts_of
-from tiskel.geometry.mesh_surface import MeshSurface
+from tiskel.geometry.mesh_surface import MeshSurface, unique_pairs
 from tiskel.geometry.neighbours import morton_curve
+from tiskel.geometry.overlap import united
 from tiskel.geometry.refine import refined
 from tiskel.geometry.thickness import thicknesses
 
@@ -53,12 +54,15 @@ class SampledMesh:
         Counts of the mesh.
     wanted : int
         Points that the thickness asks for.
+    hidden : int
+        Points that lay inside other parts of the mesh and are left out.
     """
 
     points: Points
     surface: MeshSurface | None
     facts: MeshFacts
     wanted: int
+    hidden: int
 
 
 def sample_mesh(vertices: Points, faces: Edges, count: int | None = None, seed: int = 0) -> SampledMesh:
@@ -111,7 +115,10 @@ def sample_mesh(vertices: Points, faces: Edges, count: int | None = None, seed: 
     normals = _averaged(fine.normals[rows], links)
     areas = spacing[rows] ** 2 * mesh.areas.sum() / (spacing[rows] ** 2).sum()
     surface = MeshSurface(normals, areas, links, facts.watertight, facts.handles if facts.watertight else None)
-    return SampledMesh(points, surface if _hangs_together(mesh) else None, facts, wanted)
+    if not _hangs_together(mesh):
+        return SampledMesh(points, None, facts, wanted, 0)
+    surface, left = united(points, surface, fine.part[rows])
+    return SampledMesh(np.ascontiguousarray(points[left]), surface, facts, wanted, len(points) - len(left))
 
 
 def _hangs_together(mesh: TriangleMesh) -> bool:
@@ -161,7 +168,7 @@ def _placed(mesh: TriangleMesh, density: Numbers, count: int, seed: int) -> tupl
 def _links(mesh: TriangleMesh, points: Points, rows: Indices) -> Edges:
     """Return the pairs (l, 2) of points whose cells touch, lower row first."""
     count, corners = len(points), mesh.faces[rows]
-    sides = _unique(np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]]))
+    sides = unique_pairs(np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]]))
     first = np.concatenate([count + sides[:, 0], np.repeat(np.arange(count), 3)])
     second = count + np.concatenate([sides[:, 1], corners.ravel()])
     every = np.concatenate([points, mesh.vertices])
@@ -169,14 +176,7 @@ def _links(mesh: TriangleMesh, points: Points, rows: Indices) -> Edges:
     graph = sparse.coo_array((length, (first, second)), shape=(len(every), len(every))).tocsr()
     cell = dijkstra(graph, directed=False, indices=np.arange(count), min_only=True, return_predecessors=True)[2]
     pairs = np.stack([cell[first], cell[second]], axis=1)
-    return _unique(pairs[(pairs[:, 0] != pairs[:, 1]) & (pairs.min(axis=1) >= 0)])
-
-
-def _unique(pairs: Pairs) -> Edges:
-    """Return pairs (n, 2) once each, the lower number first."""
-    count = int(pairs.max(initial=0)) + 1
-    keys = np.unique(pair_keys(pairs, count))
-    return np.stack([keys // count, keys % count], axis=1).astype(np.int32)
+    return unique_pairs(pairs[(pairs[:, 0] != pairs[:, 1]) & (pairs.min(axis=1) >= 0)])
 
 
 def _averaged(normals: Points, links: Edges) -> Points:

@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Points
+from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Pairs, Points
 from tiskel.errors import TiskelError
+from tiskel.geometry.mesh import pair_keys
 
 HOPS = 3  # cells of other points, at most, between two that are neighbours; as far as thirty nearest reach
 
@@ -69,6 +70,13 @@ class MeshSurface:
         near = reach.tocoo()
         there = near.row * np.int64(count) + near.col
         return np.asarray(np.isin(np.arange(count)[:, None] * np.int64(count) + neighbours, there))
+
+
+def unique_pairs(pairs: Pairs) -> Edges:
+    """Return pairs (n, 2) once each, the lower number first."""
+    count = int(pairs.max(initial=0)) + 1
+    keys = np.unique(pair_keys(pairs, count))
+    return np.stack([keys // count, keys % count], axis=1).astype(np.int32)
 
 
 def still_on(surface: MeshSurface | None, points: npt.ArrayLike, before: npt.ArrayLike) -> MeshSurface | None:

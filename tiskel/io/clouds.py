@@ -147,6 +147,9 @@ def _sampled(cloud: Cloud, faces: Edges, count: int | None, seed: int) -> Cloud:
     notes = (
         f"{cloud.name} is a mesh: {found.facts}",
         f"sampled to {len(found.points)} points, closer where it is thin ({asked})",
+        f"{found.hidden} points inside other parts are left out: parts that run into each other are one body"
+        if found.hidden
+        else "",
         "" if found.surface else "its faces hardly hang together; what is connected follows from the points alone",
     )
     said = tuple(filter(None, notes))
