@@ -242,8 +242,9 @@ def test_what_lies_inside_another_part_is_no_surface() -> None:
     """A tube that enters another: of it a tenth, and of the other a disc, are hidden."""
     mesh = joined(tube([0, 0, 0], [0, 0, 5], 0.3, 48), tube([0, 0, 2.5], [3, 0, 2.5], 0.2, 48))
     found = sample_mesh(*mesh, 4000)
-    inside_one = (np.hypot(*found.points[:, :2].T) < 0.28) & (found.points[:, 2] > 0.1) & (found.points[:, 2] < 4.9)
-    inside_other = (np.hypot(found.points[:, 1], found.points[:, 2] - 2.5) < 0.18) & (found.points[:, 0] > 0.1)
+    # Within a spacing of a wall, 0.05, it is open on which side of it a point lies.
+    inside_one = (np.hypot(*found.points[:, :2].T) < 0.25) & (found.points[:, 2] > 0.1) & (found.points[:, 2] < 4.9)
+    inside_other = (np.hypot(found.points[:, 1], found.points[:, 2] - 2.5) < 0.15) & (found.points[:, 0] > 0.1)
     inside_other &= found.points[:, 0] < 2.9
     assert inside_one.sum() == 0
     assert inside_other.sum() == 0
@@ -260,3 +261,20 @@ def test_parts_that_only_touch_hide_nothing(near: SampledMesh) -> None:
     hollow = sample_mesh(*boxes(HOLLOW), 3000)
     assert hollow.hidden == 0
     assert known(hollow).handles == 0
+
+
+def test_turning_a_mesh_and_the_order_of_its_file_change_nothing() -> None:
+    points, faces = joined(tube([0, 0, 0], [0, 0, 3], 0.3), tube([0.1, 0.2, 4], [2, 0.5, 5], 0.2))
+    rng = np.random.default_rng(5)
+    order = rng.permutation(len(points))
+    place = np.empty_like(order)
+    place[order] = np.arange(len(order))
+    shuffled = np.roll(place[faces][rng.permutation(len(faces))], 1, axis=1).astype(np.int32)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)  # no mirror
+    one, other = sample_mesh(points, faces, 1000), sample_mesh(points[order] @ turn.T * 7 + 3, shuffled, 1000)
+    back = (other.points - 3) / 7 @ turn
+    # Rounding decides on the border of two triangles which of them a point falls to, and moves those after it.
+    assert np.quantile(cKDTree(one.points).query(back)[0], 0.9) < 0.01
+    same = sample_mesh(points[order], shuffled, 1000)
+    np.testing.assert_allclose(same.points, one.points, atol=1e-9)

@@ -106,7 +106,8 @@ def half_edges(faces: Edges) -> HalfEdges:
 def welded(vertices: Points, faces: Edges) -> TriangleMesh:
     """Return a mesh without what a file repeats: corners at one place, triangles without area or twice there.
 
-    Closed parts whose sides are turned inwards are turned outwards.
+    Closed parts whose sides are turned inwards are turned outwards. Vertices and triangles are in the order of their
+    coordinates: the order in the file does not matter.
 
     Parameters
     ----------
@@ -130,8 +131,10 @@ def welded(vertices: Points, faces: Edges) -> TriangleMesh:
     first = np.unique(label, return_index=True)[1]
     triangles = label[same.ravel()][corner.ravel()].reshape(-1, 3).astype(np.int32)
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+    lowest = triangles.argmin(axis=1)[:, None]  # the corner that comes first, whatever the file begins with
+    triangles = np.take_along_axis(triangles, (lowest + [0, 1, 2]) % 3, axis=1)
     once = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)[1]
-    return _turned_out(TriangleMesh(np.ascontiguousarray(places[first]), triangles[np.sort(once)]))
+    return _turned_out(TriangleMesh(np.ascontiguousarray(places[first]), triangles[once]))
 
 
 def _turned_out(mesh: TriangleMesh) -> TriangleMesh:

@@ -16,7 +16,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Edges, Indices, Numbers, Points, diagonal
+from tiskel.arrays import TINY, Edges, Indices, Numbers, Points, Table, diagonal, finite_rows
 from tiskel.errors import TiskelError
 from tiskel.geometry.mesh import TriangleMesh, welded
 from tiskel.geometry.mesh_facts import MeshFacts, facts_of
@@ -97,7 +97,8 @@ def sample_mesh(vertices: Points, faces: Edges, count: int | None = None, seed: 
     >>> found.points.shape, found.surface.handles, found.facts.watertight
     ((500, 3), 0, True)
     """
-    mesh = welded(vertices, faces)
+    axes = _own_axes(vertices, faces)
+    mesh = welded(np.ascontiguousarray(vertices @ axes.T), faces)
     if mesh.areas.sum() == 0:
         raise TiskelError(f"the mesh of {len(faces)} triangles has no area; check its vertices")
     facts = facts_of(mesh)
@@ -114,11 +115,23 @@ def sample_mesh(vertices: Points, faces: Edges, count: int | None = None, seed: 
     links = _links(fine, points, rows)
     normals = _averaged(fine.normals[rows], links)
     areas = spacing[rows] ** 2 * mesh.areas.sum() / (spacing[rows] ** 2).sum()
+    points, normals = np.ascontiguousarray(points @ axes), normals @ axes
     surface = MeshSurface(normals, areas, links, facts.watertight, facts.handles if facts.watertight else None)
     if not _hangs_together(mesh):
         return SampledMesh(points, None, facts, wanted, 0)
     surface, left = united(points, surface, fine.part[rows])
     return SampledMesh(np.ascontiguousarray(points[left]), surface, facts, wanted, len(points) - len(left))
+
+
+def _own_axes(vertices: Points, faces: Edges) -> Table:
+    """Return (3, 3) principal axes of the corners of all triangles as rows, each towards its longer tail.
+
+    In them a turned mesh lies the same and is sampled the same.
+    """
+    corners = vertices[faces[finite_rows(vertices)[faces].all(axis=1)]].reshape(-1, 3)
+    offset = corners - (corners.mean(axis=0) if len(corners) else 0)
+    axes = np.linalg.eigh(offset.T @ offset)[1].T
+    return np.asarray(axes * np.where(((offset @ axes.T) ** 3).sum(axis=0) < 0, -1.0, 1.0)[:, None])
 
 
 def _hangs_together(mesh: TriangleMesh) -> bool:
