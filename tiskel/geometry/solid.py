@@ -37,22 +37,26 @@ class Solid:
         Whether there is an inside to speak of.
     handles : int or None
         How many there are, None where they cannot be told.
+    closed : bool
+        Whether a watertight mesh says that its surface has no hole.
     """
 
     oriented: OrientedCloud
     trusted: bool
     handles: int | None
+    closed: bool = False
 
 
-def solid_of(surface: OrientedCloud, handles: int | None = None) -> Solid:
-    """Return the solid inside an oriented cloud, with its handles where a mesh knows them.
+def solid_of(surface: OrientedCloud, handles: int | None = None, closed: bool = False) -> Solid:
+    """Return the solid inside an oriented cloud, with its handles where a mesh knows them; closed where one says so.
 
     Of a large cloud, what a part of its points says.
     """
     step = -(-len(surface.points) // PROBED)
     points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
     thinned = checked(OrientedCloud(points, normals, step * surface.areas[::step]), seed=0)
-    return Solid(surface, thinned.trusted, solid_handles(thinned)[0] if handles is None else handles)
+    counted = solid_handles(thinned)[0] if handles is None else handles
+    return Solid(surface, thinned.trusted or closed, counted, closed)
 
 
 def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:

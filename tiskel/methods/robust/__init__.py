@@ -76,7 +76,8 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
     """Return the best curve, of tubes or of wires."""
     assert trace.sections is not None  # curve() has seen to that
     contracted = np.ascontiguousarray(trace.points @ network.axes.T)
-    solid = solid_of(network.oriented(contracted), None if network.surface is None else network.surface.handles)
+    oriented, mesh = network.oriented(contracted), network.surface
+    solid = solid_of(oriented) if mesh is None else solid_of(oriented, mesh.handles, mesh.outward)
     if params.regime == "wire" or (params.regime == "auto" and surely_wires(network)):
         return wires(network, solid, params)
     best = fitted_curve(network, solid, trace.sections, params)
