@@ -20,7 +20,7 @@ COMMON: dict[str, tuple[Any, Any]] = {
 }
 INPUT: dict[str, tuple[Any, Any]] = {
     "voxel": (options.Voxel, CONDITIONING.voxel),
-    "sample": (options.Sample, CONDITIONING.sample),
+    "sample": (options.Sample, options.SAMPLE),
     "crop": (options.Crop, CONDITIONING.crop),
     "outliers": (options.Outliers, CONDITIONING.outliers),
     "cap": (options.Cap, CONDITIONING.cap),

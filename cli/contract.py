@@ -30,12 +30,14 @@ def contract(
     conditioning_params = stages.conditioning_params(conditioning)
     from tiskel import condition
     from tiskel import contract as contract_cloud
+    from tiskel.geometry.mesh_surface import still_on
     from tiskel.io.stages.contraction import dump_contraction
 
     cloud = stages.read_cloud(source, conditioning_params)
     points, report = condition(cloud.points, conditioning_params)
     console.tell(messages.said(report))
-    contraction = contract_cloud(points, params, stages.weights_of(cloud, weights))
+    surface = still_on(cloud.surface, points, cloud.points)
+    contraction = contract_cloud(points, params, stages.weights_of(cloud, weights), surface)
     stages.tell_contraction(contraction)
     target = stages.output_path(output, source, "contraction.ply")
     stages.write(target, lambda: dump_contraction(contraction, cloud.source, history=history))

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
@@ -13,9 +14,7 @@ Target = Annotated[Path, typer.Argument(metavar="OUT", help="A file; its suffix 
 
 
 @common
-def convert(
-    source: o.Source, target: Target, sample: o.Sample = o.CONDITIONING.sample, seed: o.Seed = o.CONDITIONING.seed
-) -> None:
+def convert(source: o.Source, target: Target, sample: o.Sample = o.SAMPLE, seed: o.Seed = o.CONDITIONING.seed) -> None:
     """Convert a cloud, a mesh or a skeleton to another format.
 
     Clouds go to PLY, XYZ, PTS, CSV, TXT, NPY; a skeleton file to OBJ lines, SWC, GraphML, JSON or PLY; any stage file
@@ -33,6 +32,7 @@ def convert(
         skeleton = parse_skeleton(data, str(source))
         stages.write(target, lambda: EXPORTS[suffix](skeleton))
         return
-    cloud = parse_cloud(data, source, mesh_samples=sample, seed=seed)
+    cloud = parse_cloud(data, source, mesh_samples=stages.sample_of(sample), seed=seed)
     console.warn(cloud.warnings)
+    console.tell(messages.said(cloud.notes))
     stages.write(target, lambda: dump_cloud(cloud.points, target))

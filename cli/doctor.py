@@ -20,7 +20,6 @@ NEEDED = {
     "ripser": "ripser",
 }
 OPTIONAL = {
-    "open3d": "STL meshes; on a bare server it needs libgl1 libegl1 libx11-6 libgomp1 libusb-1.0-0",
     "cvxopt": "--solver cholmod; pip install 'tiskel[cholmod]'",
 }
 

@@ -51,7 +51,9 @@ def _facts(source: Any) -> dict[str, Any]:
         return {"file": source.name, "stage": stage, "skeleton": counts, "cloud": _extent(s.cloud)}
     cloud = parse_cloud(data, source)
     properties = {"properties": sorted(cloud.properties)} if cloud.properties else {}
-    return {"file": cloud.name, "cloud": _extent(cloud.points) | properties, "warnings": list(cloud.warnings)}
+    mesh = {"mesh": cloud.mesh.as_dict()} if cloud.mesh else {}
+    said = {"warnings": list(cloud.warnings), "notes": list(cloud.notes)}
+    return {"file": cloud.name, **mesh, "cloud": _extent(cloud.points) | properties, **said}
 
 
 def _surface_facts(data: bytes, source: Any) -> dict[str, Any]:
@@ -67,11 +69,17 @@ def _surface_facts(data: bytes, source: Any) -> dict[str, Any]:
 
 
 def _extent(points: "Points") -> dict[str, Any]:
-    """Return counts and the bounding box of the finite points."""
+    """Return counts and the bounding box of the finite points, and that of the body where some points are stray."""
     import numpy as np
+
+    from tiskel.geometry.strays import stray_points
 
     finite = points[np.isfinite(points).all(axis=1)]
     box = {"min": finite.min(axis=0).tolist(), "max": finite.max(axis=0).tolist()} if len(finite) else {}
+    stray = stray_points(finite)
+    if stray.any():
+        body = finite[~stray]
+        box |= {"stray": int(stray.sum()), "body_min": body.min(axis=0).tolist(), "body_max": body.max(axis=0).tolist()}
     return {
         "points": len(points),
         "not_finite": len(points) - len(finite),

@@ -9,6 +9,7 @@ from tiskel.params import ConditioningParams, Method, NoiseKind, PipelineParams
 
 CONDITIONING = ConditioningParams()
 PIPELINE = PipelineParams()
+SAMPLE = "auto"  #: of --sample: all points of a cloud; of a mesh as many as its thickness asks for
 METHOD: Method = PIPELINE.contraction.method
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="A file, or - for standard input.", show_default=False)]
@@ -58,10 +59,10 @@ Voxel = Annotated[
     ),
 ]
 Sample = Annotated[
-    int | None,
+    str | None,
     typer.Option(
-        metavar="N",
-        help="A random subset; for a mesh, the points to sample.",
+        metavar="auto|N",
+        help="A random subset of so many points. Of a mesh, the points to sample; auto: as its thickness asks for.",
         show_default=False,
         rich_help_panel="Input",
     ),

@@ -62,7 +62,8 @@ def run(
     from tiskel.cli.run_files import files_of, pictures_of
 
     parts: list[Finished] = []
-    result = run_pipeline(cloud.points, params, stages.weights_of(cloud, weights), lambda done: _tell(done, parts))
+    weighted = stages.weights_of(cloud, weights)
+    result = run_pipeline(cloud.points, params, weighted, lambda done: _tell(done, parts), cloud.surface)
     drawing = time.perf_counter()
     pictures = pictures_of(result, cloud)
     seconds = {"read": read - start, **result.seconds, "pictures": time.perf_counter() - drawing}

@@ -23,7 +23,18 @@ PARTS_OF_PI = re.compile(r"([+-]?)(?:(\d+(?:\.\d+)?)\*)?pi(?:/(\d+(?:\.\d+)?))?"
 
 def conditioning_params(given: Mapping[str, Any]) -> ConditioningParams:
     """Return what the input options say."""
-    return ConditioningParams(**{**given, "crop": _numbers("--crop", given["crop"], 6)})
+    crop, sample = _numbers("--crop", given["crop"], 6), sample_of(given["sample"])
+    return ConditioningParams(**{**given, "crop": crop, "sample": sample})
+
+
+def sample_of(value: str | int | None) -> int | None:
+    """Return the number of points that --sample names, None for auto."""
+    if value in {None, "auto"}:
+        return None
+    try:
+        return int(str(value))
+    except ValueError:
+        raise TiskelError(f"--sample needs auto or a number of points, got {value!r}") from None
 
 
 def read_cloud(source: Path, params: ConditioningParams) -> "Cloud":
@@ -32,6 +43,7 @@ def read_cloud(source: Path, params: ConditioningParams) -> "Cloud":
 
     cloud = load_cloud(source, mesh_samples=params.sample, seed=params.seed)
     console.warn(cloud.warnings)
+    console.tell(messages.said(cloud.notes))
     return cloud
 
 

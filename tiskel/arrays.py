@@ -55,6 +55,19 @@ def as_points(points: npt.ArrayLike) -> Points:
     return array
 
 
+def as_weights(weights: npt.ArrayLike, count: int) -> Numbers:
+    """Return one positive number for each of so many points (count,); raise TiskelError for anything else."""
+    values = np.asarray(weights, dtype=np.float64)
+    if values.shape != (count,):
+        raise TiskelError(
+            f"weights must be one number for each of the {count} points, got shape {values.shape}; "
+            "leave out what changes the number of points"
+        )
+    if not (np.isfinite(values) & (values > 0)).all():
+        raise TiskelError("weights must be positive and finite; 1 leaves a point as it is")
+    return values
+
+
 def finite_rows(points: Points) -> Mask:
     """Return (n,) bool, which of points (n, 3) have three finite numbers."""
     return np.asarray(np.isfinite(points).all(axis=1))

@@ -1,25 +1,29 @@
 """The stage ``contract``: a cloud in, a contracted cloud out, with the record of how."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from tiskel.arrays import (
     Frame,
     Indices,
-    Numbers,
+    Mask,
     Points,
     Stack,
     as_points,
+    as_weights,
     check_solid,
     finite_rows,
     first_of_duplicates,
     normalisation,
 )
 from tiskel.errors import TiskelError
+from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.rings import Rings
+from tiskel.geometry.strays import stray_points
 from tiskel.methods import METHODS
 from tiskel.methods.trace import Sections, Status, StepRecord, Trace, survivors
 from tiskel.params import ContractionParams, RobustParams
@@ -44,7 +48,7 @@ class Contraction:
     merged_into : (n,) int32
         Row of the cloud that each removed point was merged into, -1 for the others.
     merged_step : (n,) int32
-        The step of that, from 1; 0 for a duplicate; -1 for points that are left.
+        The step of that, from 1; 0 for a duplicate or a stray point, which no method sees; -1 for points that are left.
     history : (k, m, 3) float64
         Positions of the points that are left, after each step; none (k = 0) where a file was written without.
     steps : tuple of StepRecord
@@ -60,6 +64,8 @@ class Contraction:
     sections : Sections or None
         By robust: the section that each point belongs to, a connected piece of what the last front passed in one bin
         of distance, and the number of the bin. None by the others.
+    surface : MeshSurface or None
+        By robust, of points on a mesh: what it knows about each of ``points``.
     prepared : object
         What the method worked out about the cloud, so that the curve need not do it again; not in files.
     ring_seconds : float
@@ -87,6 +93,7 @@ class Contraction:
     params: ContractionParams
     rings: Rings | None = None
     sections: Sections | None = None
+    surface: MeshSurface | None = None
     prepared: Any = field(default=None, repr=False)
     ring_seconds: float = 0.0
 
@@ -94,28 +101,42 @@ class Contraction:
         """Return (n,), for each point of the cloud the place in ``points`` of the one it ended up in."""
         return survivors(self.rows, self.merged_into)
 
+    @property
+    def strays(self) -> Mask:
+        """(n,) which points of the cloud are stray, see :mod:`tiskel.geometry.strays`."""
+        into = np.where(self.merged_into < 0, np.arange(len(self.cloud)), self.merged_into)
+        return np.asarray((self.merged_step == 0) & (self.cloud != self.cloud[into]).any(axis=1))
+
     def as_trace(self) -> tuple[Trace, Frame]:
-        """Return what the method's curve needs, in normalised coordinates, without the history, and the way back."""
-        frame = normalisation(self.cloud, self.params.normalise)
+        """Return what the method's curve needs, and the way back.
+
+        In normalised coordinates, without the history and without stray points.
+        """
+        body = np.flatnonzero(~self.strays)
+        frame = normalisation(self.cloud[body], self.params.normalise)
+        place = np.full(len(self.cloud) + 1, -1, np.int32)
+        place[body] = np.arange(len(body), dtype=np.int32)
         trace = Trace(
-            cloud=frame.apply(self.cloud),
+            cloud=frame.apply(self.cloud[body]),
             points=frame.apply(self.points),
-            rows=self.rows,
-            merged_into=self.merged_into,
-            merged_step=self.merged_step,
+            rows=place[self.rows],
+            merged_into=place[self.merged_into[body]],
+            merged_step=self.merged_step[body],
             history=(),
             steps=self.steps,
             status=self.status,
             rings=self.rings,
             sections=self.sections,
+            surface=self.surface and self.surface.scaled(frame.scale),
             prepared=self.prepared,
         )
         return trace, frame
 
 
 def contract(
-    points: npt.ArrayLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None
-) -> Contraction:
+    points: npt.ArrayLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None,
+    surface: MeshSurface | None = None,
+) -> Contraction:  # fmt: skip
     """Contract a cloud towards its medial curve.
 
     Methods: "robust", by fronts over the original cloud (:mod:`tiskel.methods.robust.fronts`),
@@ -126,11 +147,14 @@ def contract(
     Parameters
     ----------
     points : (n, 3), in any unit. Rows that are not finite are dropped and exact
-        duplicates merged; both are counted in the warnings.
+        duplicates merged; both are counted in the warnings. Stray points
+        (:mod:`tiskel.geometry.strays`) stay in the cloud, but no method sees them.
     params : settings.
     weights : (n,) positive, for lbc and gls: what W_L is multiplied by at each
         point. Thick parts contract more slowly; one weight for each semantic part
         evens that out (S-LBC, Meyer et al. 2023).
+    surface : what is known of the mesh that the points lie on, a row for each, see
+        :class:`tiskel.geometry.mesh_surface.MeshSurface`; ``load_cloud`` gives it. Only robust uses it.
 
     Returns
     -------
@@ -157,28 +181,22 @@ def contract(
     cloud, input_rows = np.ascontiguousarray(every[finite]), np.flatnonzero(finite).astype(np.int32)
     if len(cloud) == 0:
         raise TiskelError(f"the cloud holds no finite point ({len(every)} rows in all); check the file")
-    first = first_of_duplicates(cloud)
-    distinct = np.flatnonzero(first == np.arange(len(cloud))).astype(np.int32)
+    first = first_of_duplicates(cloud)  # of a stray point, later on, the nearest of the others
+    stray = stray_points(cloud, first)
+    distinct = np.flatnonzero((first == np.arange(len(cloud))) & ~stray).astype(np.int32)
     check_solid(cloud[distinct])
     frame = normalisation(cloud[distinct], params.normalise)
-    chosen = None if weights is None else _weights(weights, len(every))[finite][distinct]
-    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen)
+    chosen = None if weights is None else as_weights(weights, len(every))[finite][distinct]
+    known = None if surface is None else surface.checked(len(every)).at(input_rows[distinct])
+    scaled = known and known.scaled(frame.scale)
+    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen, scaled)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
-    warnings = _warnings(len(every) - len(cloud), len(cloud) - len(distinct), trace.status)
+    warnings = _warnings(len(every) - len(cloud), int((~stray).sum()) - len(distinct), trace.status)
+    if stray.any():
+        first[stray] = distinct[cKDTree(cloud[distinct]).query(cloud[stray])[1]]
+    trace = replace(trace, surface=known if trace.sections is not None else None)
     return _assembled(trace, frame, cloud, input_rows, first, distinct, warnings, params)
-
-
-def _weights(weights: npt.ArrayLike, count: int) -> Numbers:
-    values = np.asarray(weights, dtype=np.float64)
-    if values.shape != (count,):
-        raise TiskelError(
-            f"weights must be one number for each of the {count} points, got shape {values.shape}; "
-            "leave out what changes the number of points"
-        )
-    if not (np.isfinite(values) & (values > 0)).all():
-        raise TiskelError("weights must be positive and finite; 1 leaves a point as it is")
-    return values
 
 
 def _warnings(dropped: int, duplicates: int, status: Status) -> tuple[str, ...]:
@@ -217,6 +235,7 @@ def _assembled(
         params=params,
         rings=trace.rings,
         sections=trace.sections,
+        surface=trace.surface,
         prepared=trace.prepared,
         ring_seconds=trace.ring_seconds,
     )

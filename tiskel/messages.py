@@ -34,12 +34,18 @@ def warned(lines: Iterable[object]) -> Messages:
 
 
 def of_contraction(c: "Contraction") -> Messages:
-    """Return the warnings, then how many points are left and why it stopped."""
+    """Return the warnings, how many points are stray, then how many are left and why it stopped."""
     line = (
         f"contracted {len(c.cloud)} points in {len(c.steps)} steps, {len(c.points)} left "
         f"({len(c.points) / len(c.cloud):.1%}); {c.status.value}: {c.status.advice}"
     )
-    return (*warned(c.warnings), Message(line))
+    return (*warned(c.warnings), *of_strays(int(c.strays.sum())), Message(line))
+
+
+def of_strays(count: int) -> Messages:
+    """Return how many points of a cloud are stray, nothing where none is."""
+    points = "1 stray point is" if count == 1 else f"{count} stray points are"
+    return (Message(f"{points} left out: alone, far from the others, or repeated at one place"),) if count else ()
 
 
 def of_skeleton(s: "Skeleton") -> Messages:

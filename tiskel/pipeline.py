@@ -10,6 +10,7 @@ from tiskel import messages
 from tiskel.arrays import Points, as_points
 from tiskel.contraction import Contraction, contract
 from tiskel.errors import TiskelError
+from tiskel.geometry.mesh_surface import MeshSurface, still_on
 from tiskel.messages import Message, Messages
 from tiskel.metrics.evaluate import evaluate
 from tiskel.metrics.result import Quality
@@ -136,6 +137,7 @@ def run_pipeline(
     params: PipelineParams | None = None,
     weights: npt.ArrayLike | None = None,
     observer: Observer = lambda finished: None,
+    surface: MeshSurface | None = None,
 ) -> PipelineResult:
     """Do everything with one cloud: condition, contract, skeleton, measures, stability, surfaces, rolling.
 
@@ -152,6 +154,8 @@ def run_pipeline(
         See :func:`tiskel.contract`; not with conditioning that changes the number of points.
     observer : callable, optional
         Called after each part with a :class:`tiskel.pipeline.Finished`. What it raises ends the run.
+    surface : MeshSurface, optional
+        See :func:`tiskel.contract`; left out where conditioning changes the points.
 
     Returns
     -------
@@ -179,7 +183,11 @@ def run_pipeline(
     ready, _ = record.do(
         "condition", lambda: condition(as_points(points), chosen.conditioning), lambda r: messages.said(r[1])
     )
-    c = record.do("contract", lambda: contract(ready, chosen.contraction, weights), messages.of_contraction)
+    c = record.do(
+        "contract",
+        lambda: contract(ready, chosen.contraction, weights, still_on(surface, ready, points)),
+        messages.of_contraction,
+    )
     s = record.do("skeleton", lambda: extract_skeleton(c, chosen.skeleton), messages.of_skeleton)
     quality = record.do("metrics", lambda: evaluate(s, params=chosen.metrics), lambda _: ())
     stability = record.do("stability", lambda: assess_stability(c, chosen.stability), messages.of_stability)

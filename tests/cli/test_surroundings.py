@@ -61,10 +61,7 @@ def test_the_chain_runs_where_open3d_cannot_be_imported(tiskel: Runner, tmp_path
         assert tiskel("shape", "y", "-n", 600, "-o", f"a.{suffix}", **bare).returncode == 0
         assert tiskel("run", f"a.{suffix}", "-o", suffix, **bare).returncode == 0
     (tmp_path / "a.stl").write_text("solid a\nendsolid a\n")
-    line = one_error_line(tiskel("contract", "a.stl", **bare))
-    assert "libGL.so.1" in line
-    assert "libgl1" in line
-    assert b"not usable (libGL.so.1" in tiskel("doctor", **bare).stdout
+    assert "holds no facets" in one_error_line(tiskel("contract", "a.stl", **bare))
 
 
 def test_two_processes_start_cold_at_once_and_the_cache_location_is_kept(tmp_path: Path) -> None:

@@ -203,16 +203,24 @@ def test_broken_meshes_are_refused_with_a_reason(name: str) -> None:
     assert said in str(error.value)
 
 
-def test_whole_stl_files_of_both_kinds_go_on_to_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    shown: list[bytes] = []
-    monkeypatch.setattr(stl, "read_mesh", lambda data, name, suffix: shown.append(data))
-    text = (
-        "solid a\r\nfacet normal 0 0 1\r\nouter loop\r\n" + "  vertex 0 -1.5e-3 +2\r\n" * 3 + "endloop\r\nendfacet\r\n"
+def test_stl_files_of_both_kinds_give_the_corners_of_their_facets() -> None:
+    facets = np.arange(18, dtype=np.float32).reshape(2, 3, 3) - 1.5e-3
+    text = "solid a\r\n" + "".join(
+        "facet normal 0 0 1\r\nouter loop\r\n"
+        + "".join(f"  vertex {x:.8g} {y:+.9e} {z:.9g}\r\n" for x, y, z in facet.tolist())
+        + "endloop\r\nendfacet\r\n"
+        for facet in facets
     )
-    whole = [text.encode(), bytes(80) + struct.pack("<I", 2) + bytes(100)]
-    for data in whole:
-        stl.read(data, "a.stl")
-    assert shown == whole
+    binary = b"solid, some begin like this".ljust(80) + struct.pack("<I", 2)
+    binary += b"".join(bytes(12) + facet.tobytes() + bytes(2) for facet in facets)
+    for data in (text.encode(), binary):
+        parsed = stl.read(data, "a.stl")
+        np.testing.assert_allclose(parsed.points, facets.reshape(-1, 3), rtol=1e-6)
+        assert parsed.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
+    with pytest.raises(TiskelError, match="three numbers"):
+        stl.read(text.replace("e+00", "e+e+00").encode(), "a.stl")
+    with pytest.raises(TiskelError, match="no facets"):
+        stl.read(bytes(84), "a.stl")
 
 
 # -- files of reported trouble

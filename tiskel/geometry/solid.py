@@ -61,12 +61,15 @@ class Solid:
         How many there are, None where they cannot be told.
     grid : WindingGrid or None
         What they were counted on; None where there is no inside to speak of, or too many cells for it.
+    closed : bool
+        Whether a watertight mesh says that its surface has no hole.
     """
 
     oriented: OrientedCloud
     trusted: bool
     handles: int | None
     grid: WindingGrid | None = None
+    closed: bool = False
 
     @cached_property
     def body(self) -> Body | None:
@@ -76,13 +79,17 @@ class Solid:
         return body_of(self.grid.values, self.grid.origin, self.grid.step, self.oriented.points)
 
 
-def solid_of(surface: OrientedCloud) -> Solid:
-    """Return the solid inside an oriented cloud; of a large one, what a part of its points says."""
+def solid_of(surface: OrientedCloud, handles: int | None = None, closed: bool = False) -> Solid:
+    """Return the solid inside an oriented cloud, with its handles where a mesh knows them; closed where one says so.
+
+    Of a large cloud, what a part of its points says.
+    """
     step = -(-len(surface.points) // PROBED)
     points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
     thinned = checked(OrientedCloud(points, normals, step * surface.areas[::step]), seed=0)
     grid, _ = _grid_of(thinned)
-    return Solid(surface, thinned.trusted, None if grid is None else _handles(grid)[0], grid)
+    counted = handles if handles is not None or grid is None else _handles(grid)[0]
+    return Solid(surface, thinned.trusted or closed, counted, grid, closed)
 
 
 def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:

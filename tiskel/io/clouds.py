@@ -4,20 +4,21 @@ import gzip
 import hashlib
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy.typing as npt
 
-from tiskel.arrays import Points
+from tiskel.arrays import Edges, Points
 from tiskel.errors import TiskelError
-from tiskel.geometry.mesh import sample_mesh
+from tiskel.geometry.mesh_facts import MeshFacts
+from tiskel.geometry.mesh_sample import sample_mesh
+from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.io.formats import format_of, writer_of
 from tiskel.io.streams import STANDARD, read_bytes
 
 GZIP = b"\x1f\x8b"  #: first bytes of a file packed by gzip
-MESH_SAMPLES = 4096  #: points that a mesh is sampled to where no number is asked for
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,12 @@ class Cloud:
         Of the file.
     warnings : tuple of str
         What had to be decided while reading.
+    notes : tuple of str
+        What was done, and is no reason to worry: what a mesh is, and to how many points it was sampled.
+    mesh : MeshFacts or None
+        Counts of the mesh that the points lie on.
+    surface : MeshSurface or None
+        What that mesh knows about each point; for :func:`tiskel.contract`.
 
     Examples
     --------
@@ -54,6 +61,9 @@ class Cloud:
     name: str = ""
     sha256: str = ""
     warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    mesh: MeshFacts | None = None
+    surface: MeshSurface | None = None
 
     @property
     def source(self) -> dict[str, str]:
@@ -67,10 +77,10 @@ def load_cloud(source: str | Path, *, mesh_samples: int | None = None, seed: int
     Parameters
     ----------
     source : str or Path
-        A path (PLY, XYZ, PTS, CSV, TXT, NPY, NPZ, PCD, OFF, OBJ; STL through Open3D; each also packed by gzip), or "-"
+        A path (PLY, XYZ, PTS, CSV, TXT, NPY, NPZ, PCD, OFF, OBJ, STL; each also packed by gzip), or "-"
         for standard input, where PLY, NPY, NPZ, PCD, OFF and text tell themselves apart.
     mesh_samples : int, optional
-        Points to sample a mesh to; without it 4096.
+        Points to sample a mesh to; without it as many as its thickness asks for, 4096 to 32768.
     seed : int
         Of that sampling.
 
@@ -106,7 +116,7 @@ def parse_cloud(data: bytes, source: str | Path, *, mesh_samples: int | None = N
     source : str or Path
         Where it was read from; the suffix says of which kind it is, "-" that the bytes do.
     mesh_samples : int, optional
-        Points to sample a mesh to; without it 4096.
+        Points to sample a mesh to; without it as many as its thickness asks for, 4096 to 32768.
     seed : int
         Of that sampling.
 
@@ -124,15 +134,26 @@ def parse_cloud(data: bytes, source: str | Path, *, mesh_samples: int | None = N
         raise TiskelError(f"{name} is empty; check how it was made")
     plain, inner = _unpacked(data, name)
     parsed = format_of(inner, plain, by_content=str(source) == STANDARD).read(plain, name)
-    points, properties, warnings = parsed.points, parsed.properties, parsed.warnings
-    if len(parsed.faces):
-        count = mesh_samples or MESH_SAMPLES
-        points, properties = sample_mesh(points, parsed.faces, count, seed), {}
-        said = f"{name} is a mesh of {len(parsed.faces)} triangles; sampled to {count} points (choose with --sample)"
-        warnings = (*warnings, said)
-    if len(points) == 0:
+    if len(parsed.points) == 0:
         raise TiskelError(f"{name} holds no points; check how it was made")
-    return Cloud(points, properties, name, hashlib.sha256(data).hexdigest(), warnings)
+    cloud = Cloud(parsed.points, parsed.properties, name, hashlib.sha256(data).hexdigest(), parsed.warnings)
+    return _sampled(cloud, parsed.faces, mesh_samples, seed) if len(parsed.faces) else cloud
+
+
+def _sampled(cloud: Cloud, faces: Edges, count: int | None, seed: int) -> Cloud:
+    """Return a mesh as points, and what there is to say about it."""
+    found = sample_mesh(cloud.points, faces, count, seed)
+    asked = "as asked" if count else f"its thickness asks for {found.wanted}; choose with --sample"
+    notes = (
+        f"{cloud.name} is a mesh: {found.facts}",
+        f"sampled to {len(found.points)} points, closer where it is thin ({asked})",
+        f"{found.hidden} points inside other parts are left out: parts that run into each other are one body"
+        if found.hidden
+        else "",
+        "" if found.surface else "its faces hardly hang together; what is connected follows from the points alone",
+    )
+    said = tuple(filter(None, notes))
+    return replace(cloud, points=found.points, properties={}, notes=said, mesh=found.facts, surface=found.surface)
 
 
 def dump_cloud(points: Points, target: str | Path) -> bytes:

@@ -9,6 +9,7 @@ import numpy as np
 from tiskel.arrays import Indices, Points, resolved
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.rings import Rings
 
 
@@ -127,6 +128,8 @@ class Trace:
         One-rings of the points that are left, by place in ``rows``; None from methods without.
     sections : Sections or None
         What the last front found, a row for each of ``rows``; None from methods without fronts.
+    surface : MeshSurface or None
+        What a mesh knows about the points, a row for each of ``rows``; None where they were a cloud.
     prepared : object
         What the method worked out about the cloud and would work out again; never in a file.
     ring_seconds : float
@@ -143,6 +146,7 @@ class Trace:
     status: Status
     rings: Rings | None = None
     sections: Sections | None = None
+    surface: MeshSurface | None = None
     prepared: Any = None
     ring_seconds: float = 0.0
 

@@ -7,10 +7,21 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Edges, Frame, Points, as_points, check_solid, finite_rows, first_of_duplicates, normalisation
+from tiskel.arrays import (
+    Edges,
+    Frame,
+    Mask,
+    Points,
+    as_points,
+    check_solid,
+    finite_rows,
+    first_of_duplicates,
+    normalisation,
+)
 from tiskel.errors import TiskelError
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.graph import CurveGraph, tidy_edges
+from tiskel.geometry.strays import stray_points
 from tiskel.params import Normalisation
 
 TARGET_SAMPLES = 1000  # places on a curve that a cloud may contract to
@@ -24,7 +35,7 @@ class Subject:
     Attributes
     ----------
     cloud : (n, 3) float64
-        The cloud, finite and distinct.
+        The cloud, finite and distinct, without stray points (:mod:`tiskel.geometry.strays`).
     points : (m, 3) float64
         Skeletal points; no row where none are given.
     originals : (m, 3) float64
@@ -101,11 +112,17 @@ def make_subject(
     """
     given = as_points(cloud)
     whole = given[finite_rows(given)]
-    distinct = np.ascontiguousarray(whole[np.unique(first_of_duplicates(whole))] if len(whole) else whole)
+    first = first_of_duplicates(whole) if len(whole) else np.zeros(0, np.int32)
+    stray = stray_points(whole, first)
+    distinct = np.ascontiguousarray(whole[np.unique(first[~stray])])
     check_solid(distinct)
     frame = normalisation(distinct, kind)
     warnings = [f"{len(given) - len(whole)} rows of the cloud with NaN or Inf were dropped"] * (len(given) > len(whole))
-    skeletal, originals, correspondence = _points(points, origin, given, distinct, warnings)
+    if stray.any():
+        warnings.append(f"{stray.sum()} stray points of the cloud were left out")
+    kept = finite_rows(given)
+    kept[kept] = ~stray
+    skeletal, originals, correspondence = _points(points, origin, given, kept, distinct, warnings)
     vertices, links = _curve(nodes, edges, warnings)
     return Subject(
         cloud=frame.apply(distinct),
@@ -120,9 +137,10 @@ def make_subject(
 
 
 def _points(
-    points: npt.ArrayLike | None, origin: npt.ArrayLike | None, given: Points, distinct: Points, warnings: list[str]
-) -> tuple[Points, Points, str]:
-    """Return skeletal points, their originals, and how these were found."""
+    points: npt.ArrayLike | None, origin: npt.ArrayLike | None, given: Points, kept: Mask, distinct: Points,
+    warnings: list[str],
+) -> tuple[Points, Points, str]:  # fmt: skip
+    """Return skeletal points, their originals, and how these were found; kept says which rows of the cloud count."""
     if points is None:
         return NO_POINTS, NO_POINTS, "none"
     skeletal = as_points(points) if np.size(points) else NO_POINTS
@@ -134,7 +152,8 @@ def _points(
     finite = finite_rows(skeletal) & finite_rows(originals)
     if not finite.all():
         warnings.append(f"{(~finite).sum()} rows of the skeletal points with NaN or Inf were dropped")
-    skeletal, originals = skeletal[finite], originals[finite]
+    counted = finite & kept if how == "rows" else finite
+    skeletal, originals = skeletal[counted], originals[counted]
     if how == "nearest":
         originals = distinct[cKDTree(distinct).query(skeletal)[1]]
     return skeletal, originals, how

@@ -8,6 +8,7 @@ import numpy as np
 
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
+from tiskel.geometry.strays import body_of
 from tiskel.pictures.canvas import CLOUD, CURVE, INK, broad_view, new_figure
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
@@ -71,9 +72,10 @@ def _frames(surface: FittedSurface, run: Trajectory) -> list[bytes]:
     """Return pictures as PNG."""
     figure = new_figure(SIZE, SIZE)
     panel = figure.add_subplot()
-    axes = broad_view(surface.cloud)
+    cloud = body_of(surface.cloud)
+    axes = broad_view(cloud)
     view = np.concatenate([axes, np.cross(*axes)[None]])
-    shown = surface.cloud[:: max(1, len(surface.cloud) // SHOWN_POINTS)] @ view.T
+    shown = cloud[:: max(1, len(cloud) // SHOWN_POINTS)] @ view.T
     every = np.concatenate([shown[:, :2], run.centre @ view[:2].T - run.radius, run.centre @ view[:2].T + run.radius])
     rows = np.unique(np.linspace(0, len(run.t) - 1, min(FRAMES, len(run.t))).astype(int))
     pictures = []
@@ -109,8 +111,9 @@ def _ball(panel: Any, run: Trajectory, row: int, view: Numbers) -> None:
 
 def _page(surface: FittedSurface, run: Trajectory) -> bytes:
     rows = np.unique(np.linspace(0, len(run.t) - 1, min(600, len(run.t))).astype(int))
+    cloud = body_of(surface.cloud)
     data = {
-        "cloud": surface.cloud[:: max(1, len(surface.cloud) // PAGE_POINTS)].round(6).tolist(),
+        "cloud": cloud[:: max(1, len(cloud) // PAGE_POINTS)].round(6).tolist(),
         "t": run.t[rows].tolist(),
         "contact": run.contact[rows].tolist(),
         "centre": run.centre[rows].tolist(),

@@ -68,7 +68,8 @@ def cloud_panel(panel: Any, cloud: Points, view: Points) -> None:
     panel : matplotlib.axes.Axes
         Where to.
     cloud : (n, 3) float64
-        The cloud; of more than 20 000 points some are left out.
+        The cloud without its stray points (:func:`tiskel.geometry.strays.body_of`), which would set the scale; of more
+        than 20 000 points some are left out.
     view : (2, 3) float64
         The directions that run across and up.
     """

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from tiskel.arrays import Numbers, Points, finite_rows
+from tiskel.geometry.strays import body_of
 from tiskel.metrics.result import Quality
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, heat, new_figure, rendered
 
@@ -31,7 +32,7 @@ def quality_picture(qualities: Sequence[tuple[str, Points, Quality]], kind: str 
     figure = new_figure(WIDTH, 3 * HEIGHT * len(qualities))
     panels = figure.subplots(3 * len(qualities), COLUMNS, squeeze=False)
     for number, (name, given, quality) in enumerate(qualities):
-        cloud = given[finite_rows(given)]
+        cloud = body_of(given[finite_rows(given)])
         rows = panels[3 * number : 3 * number + 3]
         view = broad_view(cloud)
         _curve(rows[0][0], name, cloud, quality, view)

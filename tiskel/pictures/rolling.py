@@ -7,6 +7,7 @@ import numpy as np
 
 from tiskel.arrays import Numbers, Table
 from tiskel.geometry.frames import across
+from tiskel.geometry.strays import body_of
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
@@ -59,8 +60,9 @@ def _name(r: Trajectory) -> str:
 
 def _over(panel: Any, surface: FittedSurface, runs: Sequence[Trajectory]) -> None:
     """Draw the cloud, a net of the surface, the ways of the contact, and the sphere where it ended."""
-    view = broad_view(surface.cloud)
-    cloud_panel(panel, surface.cloud, view)
+    cloud = body_of(surface.cloud)
+    view = broad_view(cloud)
+    cloud_panel(panel, cloud, view)
     for place in np.linspace(0, V_STOP, 24):
         ring = np.stack(surface.jet(TURN, np.full(len(TURN), place)).f, axis=1)
         panel.plot(*(ring @ view.T).T, color=INK, linewidth=0.25)

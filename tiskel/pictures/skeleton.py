@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from tiskel.arrays import Points
+from tiskel.geometry.strays import body_of
 from tiskel.pictures.canvas import new_figure, rendered
 from tiskel.skeleton import Skeleton
 
@@ -16,9 +17,10 @@ PANELS = ((0, 0, (0, 1)), (1, 0, (0, 2)), (0, 1, (2, 1)))  # row, column, axes a
 
 def skeleton_picture(skeleton: Skeleton, title: str) -> bytes:
     """Return a PNG of three views along the principal axes of the cloud, at one scale: cloud grey, curve red."""
-    centre = skeleton.cloud.mean(axis=0)
-    axes = np.linalg.svd(skeleton.cloud - centre, full_matrices=False)[2]
-    cloud, nodes = (skeleton.cloud - centre) @ axes.T, (skeleton.nodes - centre) @ axes.T
+    body = body_of(skeleton.cloud)
+    centre = body.mean(axis=0)
+    axes = np.linalg.svd(body - centre, full_matrices=False)[2]
+    cloud, nodes = (body - centre) @ axes.T, (skeleton.nodes - centre) @ axes.T
     extent = np.maximum(np.ptp(cloud, axis=0), SLENDER * np.ptp(cloud, axis=0).max())
     widths, heights = (extent[0], extent[2]), (extent[1], extent[2])
     height = (WIDTH - MARGIN) * sum(heights) / sum(widths) + MARGIN

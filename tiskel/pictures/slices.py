@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
+from tiskel.geometry.strays import body_of
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.rings import around
@@ -36,21 +37,23 @@ def slices_picture(surfaces: Surfaces, title: str, kind: str = "png") -> bytes:
     bytes
     """
     longest = sorted(surfaces, key=lambda s: -s.length)[:MOST]
+    body = body_of(longest[0].cloud)
     figure = new_figure(WIDTH, HEIGHT * len(longest) + 0.4)
     grid = figure.add_gridspec(len(longest), 4)
     for row, surface in enumerate(longest):
-        view = broad_view(surface.cloud)
-        _slices(figure.add_subplot(grid[row, 0]), surface, view)
+        cloud = body if surface.cloud is longest[0].cloud else body_of(surface.cloud)
+        view = broad_view(cloud)
+        _slices(figure.add_subplot(grid[row, 0]), surface, cloud, view)
         _section(figure.add_subplot(grid[row, 1], projection="polar"), figure.add_subplot(grid[row, 2]), surface)
-        _surface(figure.add_subplot(grid[row, 3]), surface, view)
+        _surface(figure.add_subplot(grid[row, 3]), surface, cloud, view)
     more = "" if len(longest) == len(surfaces) else f", the {MOST} longest of {len(surfaces)} surfaces"
     figure.suptitle(f"{title}{more}", fontsize=10)
     return rendered(figure, kind)
 
 
-def _slices(panel: Any, s: FittedSurface, view: Points) -> None:
+def _slices(panel: Any, s: FittedSurface, cloud: Points, view: Points) -> None:
     """Draw the outline of every slice, those that were bridged dashed, and the skeleton curve."""
-    cloud_panel(panel, s.cloud, view)
+    cloud_panel(panel, cloud, view)
     for section in s.sections:
         fitted = section.case is Case.FITTED
         ring = np.stack(s.jet(TURN, np.full(len(TURN), section.v)).f, axis=1)
@@ -88,9 +91,9 @@ def _places(s: FittedSurface) -> Numbers:
     return around(s.cloud, s.rows, s.tube.axis, s.tube.field, start).v
 
 
-def _surface(panel: Any, s: FittedSurface, view: Points) -> None:
+def _surface(panel: Any, s: FittedSurface, cloud: Points, view: Points) -> None:
     """Draw a net of the surface over the points."""
-    cloud_panel(panel, s.cloud, view)
+    cloud_panel(panel, cloud, view)
     v = np.linspace(0, V_STOP, 200)
     for place in np.linspace(0, V_STOP, RINGS):
         panel.plot(*_flat(s, TURN, np.full(len(TURN), place), view), color=INK, linewidth=0.3)

@@ -32,11 +32,12 @@ def stability_picture(contraction: Contraction, stability: Stability, title: str
     count = len(stability.steps)
     figure = new_figure(max(2, count) * WIDTH, 3 * HEIGHT + TITLE)
     panels = figure.subplots(3, count, squeeze=False)
-    view = broad_view(contraction.cloud)
+    cloud = contraction.cloud[~contraction.strays]
+    view = broad_view(cloud)
     for number, (step, positions) in enumerate(zip(stability.steps, contraction.history, strict=True)):
         _angles(panels[0][number], step, number + 1)
         _curvatures(panels[1][number], step)
-        cloud_panel(panels[2][number], contraction.cloud, view)
+        cloud_panel(panels[2][number], cloud, view)
         panels[2][number].scatter(*(positions @ view.T).T, s=1.5, c=CURVE, linewidths=0)
     figure.suptitle(f"{title}: {'stable' if stability.stable else 'not stable'}: {stability.reason}", fontsize=9)
     return rendered(figure, kind)

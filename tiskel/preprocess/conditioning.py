@@ -5,6 +5,7 @@ import numpy as np
 from tiskel.arrays import Mask, Points, as_points, diagonal, finite_rows
 from tiskel.errors import TiskelError
 from tiskel.geometry.neighbours import nearest_neighbours
+from tiskel.geometry.strays import body_of, stray_points
 from tiskel.params import ConditioningParams, NoiseKind
 from tiskel.preprocess.capping import cap_points
 
@@ -86,11 +87,16 @@ def _inside(points: Points, box: tuple[float, ...]) -> Mask:
 
 
 def _inliers(points: Points) -> Mask:
-    """Statistical outlier removal (Rusu et al. 2008)."""
+    """Statistical outlier removal (Rusu et al. 2008); stray points go first, and have no part in the statistics."""
     if len(points) <= OUTLIER_NEIGHBOURS:
         return np.ones(len(points), bool)
-    mean = np.sqrt(nearest_neighbours(points, OUTLIER_NEIGHBOURS)[1]).sum(axis=1) / (OUTLIER_NEIGHBOURS - 1)
-    return np.asarray(mean <= mean.mean() + OUTLIER_DEVIATIONS * mean.std())
+    body = ~stray_points(points)
+    within = np.ascontiguousarray(points[body])
+    if len(within) <= OUTLIER_NEIGHBOURS:
+        return np.asarray(body)
+    mean = np.sqrt(nearest_neighbours(within, OUTLIER_NEIGHBOURS)[1]).sum(axis=1) / (OUTLIER_NEIGHBOURS - 1)
+    body[body] = mean <= mean.mean() + OUTLIER_DEVIATIONS * mean.std()
+    return np.asarray(body)
 
 
 def with_noise(points: Points, share: float, kind: NoiseKind = "coordinates", seed: int = 0) -> Points:
@@ -113,8 +119,9 @@ def with_noise(points: Points, share: float, kind: NoiseKind = "coordinates", se
     -------
     (n, 3) float64
     """
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    scale = points - middle if kind == "coordinates" else diagonal(points) / 2
+    body = body_of(points)
+    middle = (body.min(axis=0) + body.max(axis=0)) / 2
+    scale = points - middle if kind == "coordinates" else diagonal(body) / 2
     return np.asarray(points + np.random.default_rng(seed).normal(size=points.shape) * share * scale)
 
 
@@ -139,7 +146,7 @@ def voxel_means(points: Points, side: float) -> Points:
     >>> voxel_means(np.array([[0, 0, 0], [0.5, 0, 0], [3.0, 0, 0]]), 1.0).tolist()
     [[0.25, 0.0, 0.0], [3.0, 0.0, 0.0]]
     """
-    cells = np.floor((points - points.min(axis=0)) / side)
+    cells = np.floor((points - body_of(points).min(axis=0)) / side)
     _, inverse, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     sums = [np.bincount(inverse.ravel(), points[:, axis], minlength=len(counts)) for axis in range(3)]
     return np.stack(sums, axis=1) / counts[:, None]

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Numbers
+from tiskel.geometry.strays import body_of
 from tiskel.params import RollParams
 from tiskel.rolling.equations import margin
 from tiskel.rolling.models import RollingModel, tube_of
@@ -81,12 +82,13 @@ class Meeting:
     def __init__(self, surface: FittedSurface, params: RollParams, radius: float) -> None:
         self.surface, self.sigma, self.radius = surface, params.sigma, radius
         self.reach = max(radius - max(SUNK * radius, ROUGH * surface.error * surface.radius), 0.0)
-        self.tree = cKDTree(surface.cloud)
+        self.cloud = body_of(surface.cloud)
+        self.tree = cKDTree(self.cloud)
 
     def __call__(self, u: float, v: float, *_: float) -> float:
         """Return -1 where points farther from the contact than the radius lie deep in the sphere, else 1."""
         jet = self.surface.jet(u, v)
         contact = np.array(jet.f)
         near = self.tree.query_ball_point(contact + self.radius * np.array(forms_of(jet, self.sigma).z), self.reach)
-        away = np.linalg.norm(self.surface.cloud[near] - contact, axis=1) > self.radius
+        away = np.linalg.norm(self.cloud[near] - contact, axis=1) > self.radius
         return -1.0 if away.any() else 1.0

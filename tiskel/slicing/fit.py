@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points, as_points, diagonal
+from tiskel.arrays import Indices, Mask, Numbers, Points, as_points, diagonal
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import BSplineCurve
 from tiskel.geometry.frames import step_lengths
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.spacing import spacing_of
+from tiskel.geometry.strays import body_rows
 from tiskel.params import SurfaceParams
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
@@ -77,15 +78,15 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
     if isinstance(skeleton, Skeleton):
         every, owner = skeleton.cloud if cloud is None else as_points(cloud), skeleton.node_of_point
         owned = len(owner) == len(every)
+    elif cloud is None:
+        raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
     else:
-        if cloud is None:
-            raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
         every, owned = as_points(cloud), False
-    surfaces, rejected = [], {}
+    body, surfaces, rejected = body_rows(every), [], {}
     for path in paths_of(skeleton, params.branch):
-        near = np.flatnonzero(np.isin(owner, path.nodes)) if owned else np.arange(len(every))
+        near = body & np.isin(owner, path.nodes) if owned else body
         try:
-            surfaces.append(_fitted(path, skeleton.nodes, every, near.astype(np.int32), owned, params))
+            surfaces.append(_fitted(path, skeleton.nodes, every, near, owned, params, diagonal(every[body])))
         except _Rejected as reason:
             rejected[path.name] = str(reason)
     if not surfaces:
@@ -122,10 +123,10 @@ class _Cutter:
 
 
 def _fitted(
-    path: Path, nodes: Points, cloud: Points, near: Indices, owned: bool, params: SurfaceParams
+    path: Path, nodes: Points, cloud: Points, own: Mask, owned: bool, params: SurfaceParams, scale: float
 ) -> FittedSurface:
-    points, interval = np.ascontiguousarray(cloud[near]), params.interval * diagonal(cloud)
-    count = _slices(path, nodes, interval)
+    near, interval = np.flatnonzero(own).astype(np.int32), params.interval * scale
+    points, count = np.ascontiguousarray(cloud[near]), _slices(path, nodes, interval)
     if len(near) < params.least_points:
         raise _Rejected(f"{len(near)} points lie about it")
     radius = float(np.median(cKDTree(_dense(nodes[path.nodes], interval)).query(points)[0])) if owned else interval

@@ -3,11 +3,13 @@
 Elements: ``vertex``, the contracted points, each with its original position (x0
 y0 z0) and its row in ``cloud``; by lbc and gls also with the end of its ring in
 ``ring_member`` and whether it is closed (its last member connects to the first),
-by robust with its section and level; ``ring_member``, the members of all rings one
-after the other, by place in ``vertex``; ``cloud``, every finite input point with
-its row in the input, the row of ``cloud`` it was merged into and the step of that
-(-1: it is left; step 0: a duplicate); ``history``, where it was asked for, the
-positions of the points that are left after each step, step by step.
+by robust with its section and level, and, of points on a mesh, with the normal
+and the area of the mesh; ``surface_link``, points whose cells on that mesh touch;
+``ring_member``, the members of all rings one after the other, by place in
+``vertex``; ``cloud``, every finite input point with its row in the input, the row
+of ``cloud`` it was merged into and the step of that (-1: it is left; step 0: a
+duplicate, or a stray point); ``history``, where it was asked for, the positions of
+the points that are left after each step, step by step.
 
 Format 1, which is still read, has a list property ``ring`` in ``vertex``, the
 history always, and the neighbours of robust as rings.
@@ -23,6 +25,7 @@ from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.rings import Rings
 from tiskel.io import ply
+from tiskel.io.stages.mesh import surface_columns, surface_elements, surface_facts, surface_from
 from tiskel.io.streams import Bytes, mapped, write_bytes
 from tiskel.methods.trace import Sections, Status, StepRecord
 from tiskel.params import known_settings
@@ -78,7 +81,8 @@ def dump_contraction(c: Contraction, source: dict[str, str] | None = None, *, hi
         "merged_into": c.merged_into,
         "merged_step": c.merged_step,
     }
-    elements = [ply.element("vertex", vertex), ply.element("cloud", cloud)]
+    vertex |= surface_columns(c.surface)
+    elements = [ply.element("vertex", vertex), ply.element("cloud", cloud), *surface_elements(c.surface)]
     if c.rings is not None:
         elements.append(ply.element("ring_member", {"place": c.rings.members[c.rings.mask()]}))
     if history:
@@ -89,6 +93,7 @@ def dump_contraction(c: Contraction, source: dict[str, str] | None = None, *, hi
         "status": c.status.value,
         "warnings": list(c.warnings),
         "steps": [_step_facts(step) for step in c.steps],
+        **surface_facts(c.surface),
     }
     return ply.dump(elements, STAGE, facts)
 
@@ -156,6 +161,7 @@ def parse_contraction(data: Bytes, name: str) -> Contraction:
             params=known_settings(facts["params"]),
             rings=_rings(file),
             sections=_sections(vertex),
+            surface=surface_from(file, facts),
         )
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise TiskelError(f"{name} is a damaged contraction file: {error}; run tiskel contract again") from None

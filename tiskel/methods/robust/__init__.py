@@ -24,6 +24,7 @@ import numpy as np
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.solid import solid_of
 from tiskel.methods.robust.body import body_curve
 from tiskel.methods.robust.checks import Candidate, radius_sources
@@ -45,8 +46,10 @@ BULKY = 0.04  # misfit and share off the middle from which on the inside of the 
 CLEARLY = 0.7  # of the misfit so far that another front may leave, to be taken [0, 0; decides on noisy mugs and chairs]
 
 
-def contract(points: Points, params: RobustParams, weights: Numbers | None = None) -> Trace:
-    """Contract a cloud (n, 3) by fronts, one step each.
+def contract(
+    points: Points, params: RobustParams, weights: Numbers | None = None, surface: MeshSurface | None = None
+) -> Trace:  # fmt: skip
+    """Contract a cloud (n, 3) by fronts, one step each; of points on a mesh, along it.
 
     Raises TiskelError for weights: every part goes to its axis at once, whatever its thickness.
     """
@@ -54,7 +57,7 @@ def contract(points: Points, params: RobustParams, weights: Numbers | None = Non
         raise TiskelError("method robust takes no weights; leave them out, or choose method lbc or gls")
     watch = Stopwatch()
     with watch.measure("network"):
-        network = prepared(points, params.neighbours_for(len(points)))
+        network = prepared(points, params.neighbours_for(len(points)), surface)
     trace = contract_by_fronts(network, points, params)
     return replace(trace, ring_seconds=trace.ring_seconds + watch.seconds["network"])
 
@@ -66,7 +69,7 @@ def curve(trace: Trace, params: RobustParams) -> MethodCurve:
     """
     if trace.sections is None:
         raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
-    network = trace.prepared or prepared(trace.cloud[trace.rows], params.neighbours_for(len(trace.rows)))
+    network = trace.prepared or prepared(trace.cloud[trace.rows], params.neighbours_for(len(trace.rows)), trace.surface)
     best = on_sheets(_best(network, trace, params), params.seen_from)
     return _translated(best, trace, network)
 
@@ -75,7 +78,8 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
     """Return the best curve, of tubes or of wires."""
     assert trace.sections is not None  # curve() has seen to that
     contracted = np.ascontiguousarray(trace.points @ network.axes.T)
-    solid = solid_of(network.oriented(contracted))
+    oriented, mesh = network.oriented(contracted), network.surface
+    solid = solid_of(oriented) if mesh is None else solid_of(oriented, mesh.handles, mesh.outward)
     if params.regime == "wire" or (params.regime == "auto" and surely_wires(network)):
         return wires(network, solid, params)
     best = fitted_curve(network, solid, trace.sections, params)

@@ -122,7 +122,7 @@ def _cyclic(graph: CurveGraph) -> Mask:
 
 def _open_ends(j: Judged) -> CurveWarning | None:
     ends = open_ends_in_sight(j)
-    if len(ends) == 0:
+    if j.solid.closed or len(ends) == 0:
         return None
     text = f"{len(ends)} ends stop at a hole in the scan and face another part of the curve: they may belong together"
     return _doubt("open-ends", text, len(ends) / j.graph.ends, j.graph.nodes[ends])

@@ -1,6 +1,6 @@
 """Which points are neighbours along the surface, and what the neighbourhoods say: prepared once for a cloud."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -8,6 +8,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Points, Table
+from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud, oriented_either_way
 from tiskel.geometry.rings import Rings
@@ -45,6 +46,9 @@ class Network:
         Pairs of neighbours along the surface, lower row first.
     lengths : (e,) float64
         How long they are.
+    surface : MeshSurface or None
+        What the mesh knows that the points lie on; then normals and areas are its own, and what it does not link is
+        no neighbour.
     """
 
     axes: Table
@@ -56,6 +60,7 @@ class Network:
     kept: Masks
     edges: Edges
     lengths: Numbers
+    surface: MeshSurface | None = None
 
     @cached_property
     def spacing(self) -> float:
@@ -93,11 +98,13 @@ class Network:
         return Rings(members, sizes, np.zeros_like(sizes))
 
     def oriented(self, contracted: Points) -> OrientedCloud:
-        """Return the cloud with normals away from where the points (n, 3) contract to, or with propagated ones.
+        """Return the cloud with normals away from where the points (n, 3) contract to, or with better ones.
 
-        The latter where these have as many points between an inside and an
-        outside: points of a bulky body hardly contract.
+        As a mesh has them; or propagated ones, where these have as many points
+        between an inside and an outside: points of a bulky body hardly contract.
         """
+        if self.surface is not None and self.surface.outward:
+            return OrientedCloud(self.points, self.normals, self.areas)
         near = np.ascontiguousarray(self.neighbours[:, :NORMAL_NEIGHBOURS])
         away, propagated = oriented_either_way(self.points, self.normals, self.areas, contracted, near)
         return away if away.consistency > propagated.consistency else propagated
@@ -114,13 +121,16 @@ def own_axes(points: Points) -> Table:
     return np.asarray(axes * np.where(((offset @ axes.T) ** 3).sum(axis=0) < 0, -1.0, 1.0)[:, None])
 
 
-def prepared(points: Points, k: int) -> Network:
-    """Return the network of a cloud (n, 3) in its own axes, see :func:`own_axes`."""
+def prepared(points: Points, k: int, surface: MeshSurface | None = None) -> Network:
+    """Return the network of a cloud (n, 3), and of the mesh that it lies on, in its own axes, see :func:`own_axes`."""
     axes = own_axes(points)
-    return neighbour_network(np.ascontiguousarray(points @ axes.T), k, axes)
+    turned = None if surface is None else replace(surface, normals=np.ascontiguousarray(surface.normals @ axes.T))
+    return neighbour_network(np.ascontiguousarray(points @ axes.T), k, axes, turned)
 
 
-def neighbour_network(points: Points, k: int, axes: Table | None = None) -> Network:
+def neighbour_network(
+    points: Points, k: int, axes: Table | None = None, surface: MeshSurface | None = None
+) -> Network:  # fmt: skip
     """Return the network of a cloud (n, 3) that lies in its axes, from its k nearest neighbours.
 
     Left out are steps that run along the normals at both ends, which would join
@@ -128,6 +138,7 @@ def neighbour_network(points: Points, k: int, axes: Table | None = None) -> Netw
     """
     neighbours, squares = nearest_neighbours(points, min(k, len(points)))
     normals = principal_axes(points, np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS]))[1][:, 2]
+    normals = normals if surface is None else surface.normals
     steps, lengths = points[neighbours] - points[:, None], np.sqrt(squares)
     here = np.abs(np.einsum("nkc,nc->nk", steps, normals))
     there = np.abs(np.einsum("nkc,nkc->nk", steps, normals[neighbours]))
@@ -136,10 +147,12 @@ def neighbour_network(points: Points, k: int, axes: Table | None = None) -> Netw
     kept = np.minimum(here, there) < ALONG_NORMALS * lengths
     kept &= lengths <= FARTHEST * np.minimum(spacings[:, None], spacings[neighbours])
     kept[:, 0] = False
+    if surface is not None:
+        kept &= surface.linked(neighbours)
     edges, edge_lengths = _edges(neighbours, kept, lengths)
     own = np.eye(3) if axes is None else axes
-    areas = np.pi * squares[:, disc] / disc
-    return Network(own, points, normals, areas, spacings, neighbours, kept, edges, edge_lengths)
+    areas = np.pi * squares[:, disc] / disc if surface is None else surface.areas
+    return Network(own, points, normals, areas, spacings, neighbours, kept, edges, edge_lengths, surface)
 
 
 def _edges(neighbours: Lists, kept: Masks, lengths: Table) -> tuple[Edges, Numbers]:

@@ -55,5 +55,6 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
             break
         found = fit(longer, again + 1)
     curve = with_stubs(found.curve, network, sections)
-    curve, gaps = bridged(curve, network, sections, params.bridge_gaps)
+    widest = params.bridge_gaps if network.surface is None else 0  # a mesh knows what is connected
+    curve, gaps = bridged(curve, network, sections, widest)
     return Candidate(fit(curve, 0), sections, network, solid, gaps)

@@ -1,0 +1,43 @@
+"""What a stage file keeps of the mesh that its points lie on."""
+
+from typing import Any
+
+import numpy as np
+
+from tiskel.geometry.mesh_surface import MeshSurface
+from tiskel.io import ply
+
+NORMAL = ("nx", "ny", "nz")
+LINKS = "surface_link"
+
+
+def surface_columns(surface: MeshSurface | None) -> dict[str, Any]:
+    """Return the columns of the points: normals and areas of the mesh, nothing without one."""
+    return {} if surface is None else {**ply.xyz(surface.normals, NORMAL), "area": surface.areas}
+
+
+def surface_elements(surface: MeshSurface | None) -> list[Any]:
+    """Return the element of the links, by place in ``vertex``."""
+    return [] if surface is None else [ply.element(LINKS, {"a": surface.links[:, 0], "b": surface.links[:, 1]})]
+
+
+def surface_facts(surface: MeshSurface | None) -> dict[str, Any]:
+    """Return what is true of the mesh as a whole."""
+    return {} if surface is None else {"mesh": {"outward": surface.outward, "handles": surface.handles}}
+
+
+def surface_from(file: Any, facts: Any) -> MeshSurface | None:
+    """Return what a file says of the mesh, None where there was none.
+
+    Raises ValueError where a link names a point that is not there.
+    """
+    if LINKS not in file:
+        return None
+    vertex, links = file["vertex"].data, file[LINKS].data
+    pairs = np.stack([np.array(links[name], np.int32) for name in "ab"], axis=1)
+    if len(pairs) and not 0 <= pairs.min() <= pairs.max() < len(vertex):
+        raise ValueError(f"{LINKS} names point {pairs.max()} of {len(vertex)}")
+    handles = facts["mesh"]["handles"]
+    known = None if handles is None else int(handles)
+    areas = np.array(vertex["area"], np.float64)
+    return MeshSurface(ply.points_of(vertex, NORMAL), areas, pairs, bool(facts["mesh"]["outward"]), known)
