@@ -21,6 +21,8 @@ from tiskel.methods.robust.junctions import merged_junctions
 from tiskel.methods.robust.network import Network
 from tiskel.params import RobustParams
 
+LIMB = 0.5  # of least_branch, that a limb has to stick out of the cones: it was held against its own radius before
+
 
 def body_curve(network: Network, solid: Solid, params: RobustParams) -> Candidate | None:
     """Return the curve of round cones in the inside of a solid, and what judges it; None where there is no inside.
@@ -42,8 +44,9 @@ def body_curve(network: Network, solid: Solid, params: RobustParams) -> Candidat
 
     again = max(1, params.rounds // 2)
     found = fit(without_contained_ends(fit(curve, params.rounds).curve), again)
-    while (fewer := without_explained_branch(found.curve, network, sections, params.least_branch)) is not None:
-        found = fit(fewer, again)
+    least = LIMB * params.least_branch
+    while (fewer := without_explained_branch(found.curve, network, sections, least)) is not None:
+        found = fit(zipped(fewer, body), again)
     for _ in range(params.grow_ends):
         longer = with_tips(found, network, sections)
         if longer is None:

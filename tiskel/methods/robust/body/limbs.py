@@ -12,8 +12,8 @@ from tiskel.methods.robust.curve import ConeCurve, contract_nodes, keeps_loops, 
 STICKS_OUT = 1.0  # own radii that a limb sticks out of the ball of its joint at least
 KEEPS = 0.5  # own radii that the middle of a limb goes on for, outside the ball of its joint
 TAPERS = 0.45  # of the way that the clearance falls by: the corner of a block has 0.58, its edge 0.71, a horn less
-BESIDE = -0.3  # cosine between two branches at a joint from which on they may be one limb, up to 107 degrees
-WEB = 0.7  # of the smaller clearance at both ends: with so much all along the way there is no gap between two branches
+BESIDE = -0.8  # cosine between two branches at a joint from which on they may be one limb, up to 143 degrees
+WEB = 0.6  # of the smaller clearance at both ends: with so much all along the way there is no gap between two branches
 FULL = 0.8  # of a limb's median radius, that its last full ball has
 AS_LONG = 0.7  # of a branch, that another one is at least, to be held against it
 PROBES = np.linspace(0, 1, 11)[1:-1]  # where such a way is probed
