@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 from scipy import ndimage
 
 from tiskel.arrays import Numbers, Stack
@@ -24,6 +25,7 @@ MAX_CELLS = 1_000_000
 RIM = 1.5  # cells between the points and the first places of the grid
 COARSEST = 2.5  # spacings; on a coarser grid thin parts would be missed
 PROBED = 16384  # points; of larger clouds so many are taken
+PARTS = 2  # of a larger cloud: what one counts by chance, the other does not
 
 Grid = np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]
 
@@ -82,14 +84,21 @@ class Solid:
 def solid_of(surface: OrientedCloud, handles: int | None = None, closed: bool = False) -> Solid:
     """Return the solid inside an oriented cloud, with its handles where a mesh knows them; closed where one says so.
 
-    Of a large cloud, what a part of its points says.
+    Of a large cloud, what two parts of its points agree on.
     """
     step = -(-len(surface.points) // PROBED)
-    points, normals = (np.ascontiguousarray(rows[::step]) for rows in (surface.points, surface.normals))
-    thinned = checked(OrientedCloud(points, normals, step * surface.areas[::step]), seed=0)
-    grid, _ = _grid_of(thinned)
-    counted = handles if handles is not None or grid is None else _handles(grid)[0]
-    return Solid(surface, thinned.trusted or closed, counted, grid, closed)
+    order = np.lexsort(surface.points.T)  # parts that do not hang on the order of the rows
+    thinned = [_thinned(surface, order[start::step], step) for start in range(min(step, PARTS))]
+    grid, _ = _grid_of(thinned[0])
+    if handles is None and grid is not None:
+        counts = {_handles(grid)[0], *(solid_handles(part)[0] for part in thinned[1:])}
+        handles = counts.pop() if len(counts) == 1 else None
+    return Solid(surface, thinned[0].trusted or closed, handles, grid, closed)
+
+
+def _thinned(surface: OrientedCloud, rows: npt.NDArray[np.intp], step: int) -> OrientedCloud:
+    points, normals = np.ascontiguousarray(surface.points[rows]), np.ascontiguousarray(surface.normals[rows])
+    return checked(OrientedCloud(points, normals, step * surface.areas[rows]), seed=0)
 
 
 def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:

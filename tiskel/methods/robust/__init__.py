@@ -34,7 +34,7 @@ from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
-from tiskel.methods.robust.sheets import on_sheets
+from tiskel.methods.robust.sheets import flat_share, on_sheets
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
 from tiskel.timing import Stopwatch
@@ -43,6 +43,7 @@ from tiskel.timing import Stopwatch
 # change with 0.7 and with 1.4 times the value.
 DOUBTFUL = 0.012  # misfit from which on a further front is tried; every one after it needs as much again [0, 1]
 BULKY = 0.04  # misfit and share off the middle from which on the inside of the body is thinned
+FLAT = 0.5  # share of the nodes on sheets, from which on a cloud is one
 CLEARLY = 0.7  # of the misfit so far that another front may leave, to be taken [0, 0; decides on noisy mugs and chairs]
 
 
@@ -85,6 +86,8 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
     best = fitted_curve(network, solid, trace.sections, params)
     if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params), best):
         return thin
+    if flat_share(best) > FLAT:
+        return best  # what encloses nothing has no inside to judge a curve by
     if best.misfit + best.off_middle >= BULKY:
         inner = body_curve(network, solid, params)
         best = inner if inner is not None and _alike(inner, best) and _clearly(inner, best) else best

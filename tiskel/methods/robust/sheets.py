@@ -34,8 +34,7 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
     if not len(curve.edges) or (curve.regimes != Regime.UNKNOWN).any():
         return found
     points, owner = found.network.points[fit.rows], fit.nodes
-    offset = _across(curve, points - curve.nodes[owner], owner)
-    sheet = _agreed(curve, _turns(offset, owner, len(curve.nodes)) < TURN)
+    offset, sheet = _sheets(found)
     if seen_from is not None:
         sheet &= _one_sided(points, offset, owner, len(curve.nodes), found.network.placed(seen_from))
     if not sheet.any():
@@ -47,6 +46,18 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
     node = laid.node_of_section[found.sections.section]
     rows = np.flatnonzero(node >= 0).astype(np.int32)
     return replace(found, fit=foot_points(laid, found.network.points, rows, node[rows], nearby_edges(laid)))
+
+
+def flat_share(found: Candidate) -> float:
+    """Return the share of the nodes of a candidate that lie on sheets."""
+    return float(_sheets(found)[1].mean()) if len(found.curve.edges) else 0.0
+
+
+def _sheets(found: Candidate) -> tuple[Points, Mask]:
+    """Return the offsets (p, 3) of the points across the curve, and which nodes are on sheets."""
+    curve, fit = found.curve, found.fit
+    offset = _across(curve, found.network.points[fit.rows] - curve.nodes[fit.nodes], fit.nodes)
+    return offset, _agreed(curve, _turns(offset, fit.nodes, len(curve.nodes)) < TURN)
 
 
 def _across(curve: ConeCurve, offset: Points, owner: Indices) -> Points:
