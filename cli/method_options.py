@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tiskel.params import GlsParams, LbcParams, Normalisation, RobustParams, Solver
+from tiskel.params import GlsParams, LbcParams, Normalisation, RegimeChoice, RobustParams, Solver, Topology
 
 ROBUST, GLS, LBC = RobustParams(), GlsParams(), LbcParams()
 PUBLISHED = "gls and lbc"
@@ -95,5 +95,26 @@ CURVING: dict[str, Option] = {
             "robust", ROBUST.straightness,
         ), None,
     ),
+    "regime": (
+        _setting(
+            RegimeChoice, None, "What the limbs are: tubes, or wires thinner than their points are apart", "robust",
+            ROBUST.regime,
+        ), None,
+    ),
+    "seen_from": (
+        _setting(
+            str, "X,Y,Z", "Where the sensor stood, of a scan from one side", "robust", None,
+        ), None,
+    ),
+    "topology": (
+        _setting(
+            Topology, None, "Whether limbs of wires close loops: never, where ends meet, or only where the body is no "
+            "tree", "robust", ROBUST.topology,
+        ), None,
+    ),
+    "root": (
+        _setting(str, "X,Y,Z", "Where limbs of wires grow from, else where most points are", "robust", None), None,
+    ),
     "rounds": (_setting(int, "N", "Rounds of the fit of round cones to the points", "robust", ROBUST.rounds), None),
 }  # fmt: skip
+PLACES = ("root", "seen_from")  # options whose value is a place, written as x,y,z
