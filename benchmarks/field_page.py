@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 from field_methods import PATH, missing
-from field_scores import IN_AIR, OUTSIDE, TREE_F, UNREACHED, classified
-from field_subjects import FAMILIES, FILES, REAL, TREES, VIEWS, commit
+from field_scores import IN_AIR, OUTSIDE, TREE_F, UNREACHED, by_code, classified
+from field_subjects import AGAIN, FAMILIES, FILES, REAL, TREES, VIEWS, commit
 
 Row = dict[str, Any]
 Column = tuple[str, Callable[[list[Row]], str]]  # a heading, and the cell of some rows
@@ -59,6 +59,10 @@ GROWN: tuple[Column, ...] = (
     ("joints precision", mean("tree_joints_precision")), ("length", mean("tree_length_ratio")),
     ("radius error, measured", mean("radius_error_measured")), ("bounded", mean("radius_error_bounded")),
     ("in the air", mean("air")), ("seconds", seconds),
+)  # fmt: skip
+TWICE: tuple[Column, ...] = (
+    *SHAPES[:2], ("same graph", share_right("same_graph")), ("same tips", mean("same_tips")),
+    ("95 % within, radii", mean("same_radii_95")),
 )  # fmt: skip
 REAL_KEYS = (
     "points", "components", "loops", "ends", "air", "tree_f", "tree_tips_recall", "tree_tips_precision", "seconds",
@@ -121,6 +125,13 @@ def warned(rows: list[Row]) -> str:
     return table(["method", "wrong curves with a warning", "right curves with one"], lines)
 
 
+def codes(rows: list[Row]) -> str:
+    """Return for each method and code how many wrong and right curves carry it."""
+    found = {method: by_code(rows, method) for method in methods_of(rows)}
+    lines = [[m, code, str(c["wrong"]), str(c["right"])] for m, of in found.items() for code, c in sorted(of.items())]
+    return table(["method", "warning", "wrong curves", "right curves"], lines) if lines else "none\n"
+
+
 def faults(rows: list[Row]) -> str:
     """Return what is wrong, setting by setting and method by method."""
     lines = []
@@ -138,10 +149,10 @@ def faults(rows: list[Row]) -> str:
 def of_clouds(rows: list[Row], setting: str) -> str:
     lines = []
     for row in rows:
-        if row["setting"] == setting and "skipped" not in row:
+        if row["setting"] == setting and not missing(row["method"]):
             values = [row.get(key) for key in REAL_KEYS]
             cells = ["" if v is None else f"{v:.3f}" if isinstance(v, float) else str(v) for v in values]
-            why = row.get("crashed") or row.get("refused") or row.get("codes", "")
+            why = row.get("crashed") or row.get("refused") or row.get("skipped") or row.get("codes", "")
             lines.append([row["shape"], row["method"], *cells, row.get("wrong", ""), why])
     return table(["cloud", "method", *REAL_KEYS, "wrong", "warnings"], lines) if lines else "not scored\n"
 
@@ -158,6 +169,7 @@ def page(rows: list[Row]) -> str:
         "their exact surfaces, distances means in local radii, in the air the mean share of the length. Seconds are "
         "medians, one thread, two processes side by side.\n\n"
         f"## Families\n\n{by_setting(rows, FAMILIES, SHAPES)}\n"
+        f"## Sampled twice\n\n{by_setting(rows, [AGAIN], TWICE)}\n"
         "## From one side\n\nReached is the share of the curve within half a local radius of the middle of what was "
         "seen, or of the true curve; said is what the method calls a sheet.\n\n"
         f"{by_setting(rows, VIEWS, SEEN)}\n"
@@ -166,7 +178,7 @@ def page(rows: list[Row]) -> str:
         "## Warnings\n\nA curve is wrong whose components, loops or ends are; that is in the air for more than "
         f"{IN_AIR:.0%}, outside for more than {OUTSIDE:.0%}, from one side beyond reach for more than "
         f"{UNREACHED:.0%} without saying so; and a tree of F below {TREE_F}. Ends of views and trees are not asked "
-        f"for.\n\n{warned(rows)}\n"
+        f"for.\n\n{warned(rows)}\n{codes(rows)}\n"
         f"## Reference clouds\n\n{of_clouds(rows, REAL)}\n## Cases\n\n{of_clouds(rows, FILES)}\n"
         f"## What is wrong\n\n{faults(rows)}"
     )

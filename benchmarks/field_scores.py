@@ -48,13 +48,26 @@ def scored(subject: Subject, setting: str, method: str) -> Row:
     row |= {"components": curve.components, "loops": curve.loops, "ends": curve.ends}
     row |= compared(curve, subject.right)
     row |= in_space(curve, subject)
-    if subject.truth is not None:
+    if subject.again is not None:
+        row |= once_more(curve, subject.again, method)
+    elif subject.truth is not None:
         row |= against(curve, subject)
     return row | {"wrong": ", ".join(faults(row, subject.kind))}
 
 
 def _code(warning: object) -> str:
     return str(getattr(warning, "code", warning))
+
+
+def once_more(curve: CurveGraph, again: np.ndarray, method: str) -> Row:
+    """Return how alike the curve of another cloud of the same body is."""
+    from tiskel.metrics.repeatability import repeatability
+
+    try:
+        alike = repeatability(curve, curve_of(again, method)[0])
+    except Exception:  # a crash is counted where it is the first
+        return {"same_graph": 0}
+    return {"same_graph": int(alike.same_graph), "same_tips": alike.tips_share, "same_radii_95": alike.radii_95}
 
 
 def compared(curve: CurveGraph, right: Counts) -> Row:
@@ -189,3 +202,13 @@ def classified(rows: list[Row], method: str) -> Counter[str]:
             total[word] += 1
             total[f"{word}, warned"] += row["warnings"] > 0
     return total
+
+
+def by_code(rows: list[Row], method: str) -> dict[str, Counter[str]]:
+    """Return for each code how many wrong and how many right curves carry it."""
+    found: dict[str, Counter[str]] = {}
+    for row in rows:
+        if row["method"] == method:
+            for code in filter(None, set(row.get("codes", "").split("; "))):
+                found.setdefault(code, Counter())["wrong" if row["wrong"] else "right"] += 1
+    return found

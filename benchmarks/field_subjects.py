@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from tiskel import CurveGraph, ShapeParams, TiskelError, load_cloud, make_shape
+from tiskel import CurveGraph, ShapeParams, load_cloud, make_shape
 from tiskel.gallery.families import BODIES
+from tiskel.geometry.round_cones import ConeGraph
 from tiskel.geometry.spacing import spacing_of
 
 HERE = Path(__file__).parent
@@ -30,11 +31,19 @@ FAMILIES: dict[str, ShapeParams] = {
     for count in COUNTS
     for noise in (0.0, 0.1)
 }
-FRONT, THREE_QUARTER = "front", "three-quarter"
-VIEWS = {FRONT: (1.0, 0.0, 0.0), THREE_QUARTER: (1.0, 0.7, 0.5)}  # along the least, middle and greatest extent
+FRONT, THREE_QUARTER = (1.0, 0.0, 0.0), (1.0, 0.7, 0.5)  # along the least, middle and greatest extent
+NOISE = 0.1  # along the rays, in smallest radii
+VIEWS: dict[str, tuple[tuple[tuple[float, float, float], ...], float]] = {
+    "front": ((FRONT,), 0.0),
+    "three-quarter": ((THREE_QUARTER,), 0.0),
+    "three-quarter, sensor noise 10 %": ((THREE_QUARTER,), NOISE),
+    "two sides": ((THREE_QUARTER, (-1.0, -0.7, 0.5)), 0.0),
+}
+AGAIN = "sampled twice"  # families once more, with another seed
 
 SEEDS = 40
 TIPS, POINTS, NU = (100, 600), (4000, 12000), (0.1, 5.0)  # of generated trees: least and greatest
+SLENDER, FEWER, LEAST_TIPS = 6.0, 0.8, 20  # twigs are so many radii long: else there are fewer tips, down to so many
 THIN, EVEN_NU = 0.3, 1.0  # bounds of the classes of thickness
 TREES: dict[str, dict[str, float]] = {
     "trees clean": {},
@@ -43,7 +52,7 @@ TREES: dict[str, dict[str, float]] = {
     "trees density 10:1": {"uneven": 10.0},
 }
 REAL, FILES = "reference clouds", "cases"
-EVERY = (*FAMILIES, *VIEWS, *TREES, REAL, FILES)
+EVERY = (*FAMILIES, AGAIN, *VIEWS, *TREES, REAL, FILES)
 
 Counts = tuple[int | None, int | None, int | tuple[int, ...] | None]  # components, loops, ends; None where any will do
 
@@ -76,6 +85,8 @@ class Subject:
         "whole", "view" or "tree"; only of the first are ends and loops counted against all of the truth.
     group : str
         The class that a tree belongs to.
+    again : (m, 3) float64 or None
+        Another cloud of the same body, whose curve should be the same.
     """
 
     name: str
@@ -84,6 +95,7 @@ class Subject:
     truth: CurveGraph | None = None
     kind: str = "whole"
     group: str = ""
+    again: np.ndarray | None = None
 
 
 Make = Callable[[], Subject]  # makes the cloud where it is wanted; names are known before
@@ -101,6 +113,8 @@ def subjects(setting: str, seeds: int = SEEDS) -> Iterator[tuple[str, Make]]:
     """Yield the name of each subject of a setting, and what makes it."""
     if setting in FAMILIES:
         yield from ((name, lambda n=name: of_family(n, FAMILIES[setting])) for name in BODIES)
+    elif setting == AGAIN:
+        yield from ((name, lambda n=name: twice(n)) for name in BODIES)
     elif setting in VIEWS:
         yield from ((name, lambda n=name: of_view(n, setting)) for name in BODIES)
     elif setting in TREES and find_spec("tiskel.gallery.trees"):
@@ -116,19 +130,24 @@ def of_family(name: str, params: ShapeParams) -> Subject:
     return Subject(name, make_shape(shape, params)[0], counts(shape), shape)
 
 
+def twice(name: str) -> Subject:
+    subject = of_family(name, ShapeParams())
+    return replace(subject, again=make_shape(subject.truth, ShapeParams(seed=1))[0])  # type: ignore[arg-type]
+
+
 def of_view(name: str, view: str) -> Subject:
     shape = BODIES[name]()
     order = np.argsort(np.ptp(make_shape(shape, ShapeParams(count=2000))[0], axis=0), kind="stable")
-    direction = np.zeros(3)
-    direction[order] = VIEWS[view]
-    params = ShapeParams(views=(tuple(direction.tolist()),))
+    ways, noise = VIEWS[view]
+    turned = np.zeros((len(ways), 3))
+    turned[:, order] = ways
+    params = ShapeParams(views=tuple(map(tuple, turned.tolist())), sensor_noise=noise)
     return Subject(name, make_shape(shape, params)[0], (shape.components, None, None), shape, kind="view")
 
 
 def of_tree(number: int, setting: str) -> Subject:
     """Return a generated tree: habits in turn, thickness rising with the number, the rest by the seed."""
-    from tiskel.gallery.trees import HABITS, tree
-    from tiskel.gallery.trees import thickened as thick
+    from tiskel.gallery.trees import HABITS
 
     seeds = np.random.SeedSequence(int(commit(), 16)).generate_state(SEEDS)
     seed = int(seeds[number % SEEDS])
@@ -136,7 +155,7 @@ def of_tree(number: int, setting: str) -> Subject:
     tips, count = int(generator.integers(*TIPS, endpoint=True)), int(generator.integers(*POINTS, endpoint=True))
     levels = -(-SEEDS // len(HABITS))
     nu = NU[0] * (NU[1] / NU[0]) ** ((number // len(HABITS)) % levels / (levels - 1))
-    shape = thick(tree(list(HABITS)[number % len(HABITS)], tips=tips, seed=seed), count, nu)
+    shape = slender(list(HABITS)[number % len(HABITS)], tips, seed, count, nu)
     params = replace(ShapeParams(count=count, seed=seed % 2**31), **TREES[setting])
     if params.noise:
         spacing = spacing_of(make_shape(shape, replace(params, noise=0.0))[0])
@@ -147,10 +166,21 @@ def of_tree(number: int, setting: str) -> Subject:
     return Subject(f"tree {number}", make_shape(shape, params)[0], right, shape, "tree", group)
 
 
+def slender(habit: str, tips: int, seed: int, count: int, nu: float) -> ConeGraph:
+    """Return a tree of so many tips, or of the most whose median twig is still a twig, not a wart on a thick limb."""
+    from tiskel.gallery.trees import thickened, tree
+
+    while True:
+        shape = thickened(tree(habit, tips=tips, seed=seed), count, nu)
+        twigs = [b for b in shape.branches if 1 in (shape.degrees[b[0]], shape.degrees[b[-1]])]
+        ratio = [np.linalg.norm(np.diff(shape.nodes[b], axis=0), axis=1).sum() / shape.radii[b].mean() for b in twigs]
+        if np.median(ratio) >= SLENDER or tips <= LEAST_TIPS:
+            return shape
+        tips = max(LEAST_TIPS, int(FEWER * tips))
+
+
 def of_file(path: Path) -> Subject:
     """Return a file's cloud, as the program reads it; raise TiskelError where it cannot."""
-    if path.suffix == ".las" and not find_spec("tiskel.io.formats.las"):
-        raise TiskelError("LAS is not read")
     points = load_cloud(path).points
     truth = swc(path.parent / ".." / f"{path.stem}_truth.swc")
     right = RIGHT.get(path.stem, (None, None, None))
