@@ -127,11 +127,17 @@ def against(curve: CurveGraph, subject: Subject) -> Row:
     assert truth is not None
     if subject.kind == "tree":
         return of_tree(curve, truth, subject.cloud)
+    truth = no_thinner(truth, spacing_of(subject.cloud))
     row: Row = {k: v for k, v in agreement(curve, truth).as_dict().items() if k not in ("components", "loops", "ends")}
     row["true_ends_found"] = agreement(curve, truth).ends
     if subject.kind == "view" and curve.length > 0:
         row |= reach(curve, truth, subject.cloud)
     return row
+
+
+def no_thinner(truth: CurveGraph, spacing: float) -> CurveGraph:
+    """Return the truth with radii of a spacing at least, which distances to wires are measured in."""
+    return CurveGraph(truth.nodes, truth.edges, np.maximum(truth.radii, spacing))
 
 
 def reach(curve: CurveGraph, truth: CurveGraph, cloud: np.ndarray) -> Row:
