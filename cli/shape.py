@@ -99,8 +99,6 @@ def direction(words: str) -> tuple[float, float, float]:
 
 def listing() -> str:
     """Return the names of all shapes, a line for each group."""
-    from tiskel.gallery.catalogue import SHAPES
-    from tiskel.gallery.families import FAMILIES
+    from tiskel.gallery.families import GROUPS
 
-    groups = {"round cones": list(SHAPES), **{group: list(makers) for group, makers in FAMILIES.items()}}
-    return "\n".join(f"{group}: {' '.join(names)}" for group, names in groups.items())
+    return "\n".join(f"{group}: {' '.join(names)}" for group, names in GROUPS.items())

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 from tiskel import ShapeParams, TiskelError, make_shape, named_shape, shape_graph
 from tiskel.gallery.body import Body, Part, joined, least_thickness, surface_distance
 from tiskel.gallery.catalogue import SHAPES
-from tiskel.gallery.families import BODIES
+from tiskel.gallery.families import BODIES, GROUPS
 from tiskel.gallery.machined import block
 from tiskel.gallery.patches import cell_areas, sample_patch
 from tiskel.gallery.solids import around_holes, superellipsoid
@@ -148,7 +148,11 @@ def test_degraded_bodies_are_seeded() -> None:
 
 
 def test_names_are_of_one_shape_each() -> None:
-    assert not set(SHAPES) & set(BODIES)
+    names = [name for group in GROUPS.values() for name in group]
+    assert len(set(names)) == len(names)
+    assert {*SHAPES, *BODIES} < set(names)
+    grown = named_shape("leader-tree")
+    assert (grown.components, grown.loops, grown.ends) == (1, 0, 101)
     assert named_shape("y").ends == shape_graph("y").ends == 3
     with pytest.raises(TiskelError, match=r"choose one of capsule.*stent"):
         named_shape("unicorn")

@@ -7,7 +7,7 @@ from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.gallery.body import Body, Shape, is_inside, least_thickness
 from tiskel.gallery.catalogue import SHAPES
-from tiskel.gallery.families import BODIES
+from tiskel.gallery.families import GROUPS
 from tiskel.gallery.views import Scene, scan
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.radius import RadiusSource
@@ -74,11 +74,10 @@ def named_shape(name: str) -> Shape:
     >>> stent.components, stent.loops, stent.ends
     (1, 13, 0)
     """
-    if name in BODIES:
-        return BODIES[name]()
-    if name not in SHAPES:
-        raise TiskelError(f"no shape is called {name!r}; choose one of {', '.join([*SHAPES, *BODIES])}")
-    return SHAPES[name]()
+    every = {name: make for group in GROUPS.values() for name, make in group.items()}
+    if name not in every:
+        raise TiskelError(f"no shape is called {name!r}; choose one of {', '.join(every)}")
+    return every[name]()
 
 
 def make_shape(shape: Shape, params: ShapeParams | None = None) -> tuple[Points, Skeleton]:
