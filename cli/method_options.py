@@ -46,6 +46,12 @@ CONTRACTING: dict[str, Option] = {
             "smoother and misses small parts", "robust", ROBUST.resolution,
         ), None,
     ),
+    "max_points": (
+        _setting(
+            int, "N", "Points that fronts run over at most; the others go with the nearest. 0: all. Not given: what "
+            "the surface of a large cloud needs", "robust", None,
+        ), None,
+    ),
     "least_part": (
         _setting(
             float, "SHARE", "Separate pieces with less than this share of the points, such as loose leaves or dust, "

@@ -75,6 +75,7 @@ class RobustParams(ContractionParams):
     max_steps: int = 3  #: fronts of the contraction
     normalise: Normalisation = "side"  #: what is scaled to 1.6: the longest side [T], or the diagonal (Wen et al.)
     resolution: float = 2.5  #: width of a section along the front, in spacings of the points, at least
+    max_points: int | None = None  #: that fronts run over; None: what the surface needs of a large cloud; 0: all
     least_part: float = 0.005  #: share of the points; smaller separate parts get no curve
     extra_fronts: int = 5  #: from further ends, at most, while the curve is in doubt
     least_branch: float = 0.5  #: of its radius, what a branch sticks out of the rest at least
@@ -93,7 +94,7 @@ class RobustParams(ContractionParams):
         at_least("neighbours", self.neighbours, 4)
         for name in ("max_steps", "rounds"):
             at_least(name, getattr(self, name), 1)
-        for name in ("extra_fronts", "grow_ends"):
+        for name in ("extra_fronts", "grow_ends", "max_points"):
             at_least(name, getattr(self, name), 0)
         between("resolution", self.resolution, 0.5, inf)
         between("least_part", self.least_part, 0, 1)

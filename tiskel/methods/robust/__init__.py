@@ -2,7 +2,8 @@
 
 docs/robust.md shows each step on a cloud. The algorithm:
 
-1. Neighbours along the surface of every point, its normal and its spacing, in the cloud's own axes.
+1. Large clouds are thinned to what their surface needs, noise is averaged. Neighbours along the surface of every
+   point, its normal and its spacing, in the cloud's own axes.
 2. A front runs from an end over this graph; the connected pieces of each bin of geodesic distance are sections.
 3. Points move to the axes of their sections; two more fronts run over the contracted cloud.
 4. The sections, joined where their points are neighbours, are a Reeb graph; cycles that bound a disc inside the
@@ -35,6 +36,7 @@ from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
 from tiskel.methods.robust.sheets import flat_share, on_sheets
+from tiskel.methods.robust.thinning import remembered, thinned
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
 from tiskel.timing import Stopwatch
@@ -58,8 +60,9 @@ def contract(
         raise TiskelError("method robust takes no weights; leave them out, or choose method lbc or gls")
     watch = Stopwatch()
     with watch.measure("network"):
-        network = prepared(points, params.neighbours_for(len(points)), surface)
-    trace = contract_by_fronts(network, points, params)
+        few = thinned(points, params.max_points if surface is None else 0)  # a mesh was sampled as it needs
+        network = prepared(few.points, params.neighbours_for(len(few.points)), surface)
+    trace = few.whole(contract_by_fronts(network, few.points, params), points)
     return replace(trace, ring_seconds=trace.ring_seconds + watch.seconds["network"])
 
 
@@ -70,7 +73,7 @@ def curve(trace: Trace, params: RobustParams) -> MethodCurve:
     """
     if trace.sections is None:
         raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
-    network = trace.prepared or prepared(trace.cloud[trace.rows], params.neighbours_for(len(trace.rows)), trace.surface)
+    network = trace.prepared or prepared(remembered(trace), params.neighbours_for(len(trace.rows)), trace.surface)
     best = on_sheets(_best(network, trace, params), params.seen_from)
     return _translated(best, trace, network)
 

@@ -1,0 +1,117 @@
+"""Large clouds are thinned to what their surface needs: noise goes, thin parts and narrow gaps keep their points."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from tiskel import (
+    RobustParams,
+    ShapeParams,
+    contract,
+    extract_skeleton,
+    make_shape,
+    read_contraction,
+    shape_graph,
+    write_contraction,
+)
+from tiskel.arrays import Points
+from tiskel.methods.robust.thinning import ENOUGH, thinned
+from tiskel.metrics.truth import agreement
+
+RADIUS = 0.1
+
+
+def tube(count: int, length: float, noise: float = 0.0, radius: float = RADIUS, seed: int = 0) -> Points:
+    """Return points on an open tube along z, noise in radii."""
+    generator = np.random.default_rng(seed)
+    angle, height = generator.uniform(0, 2 * np.pi, count), generator.uniform(0, length, count)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+    return points + noise * radius * generator.normal(size=points.shape)
+
+
+def half_torus(count: int, noise: float) -> Points:
+    """Return points on half a torus of radii 1 and 0.3, noise in diagonals."""
+    generator = np.random.default_rng(0)
+    along, around = generator.uniform(0, np.pi, 3 * count), generator.uniform(0, 2 * np.pi, 3 * count)
+    kept = np.flatnonzero(generator.uniform(0, 1.3, 3 * count) < 1 + 0.3 * np.cos(around))[:count]
+    along, around = along[kept], around[kept]
+    out = 1 + 0.3 * np.cos(around)
+    points = np.stack([out * np.cos(along), out * np.sin(along), 0.3 * np.sin(around)], axis=1)
+    return np.asarray(points + noise * np.linalg.norm(np.ptp(points, axis=0)) * generator.normal(size=points.shape))
+
+
+@pytest.mark.parametrize("count", [4096, 30_000, 120_000])
+def test_more_points_make_no_worse_curve(count: int) -> None:
+    """Taken as they are, 120 000 points of a half torus with noise of 0.5 % have had four ends."""
+    s = extract_skeleton(contract(half_torus(count, 0.005)))
+    assert (s.components, s.loops, s.ends) == (1, 0, 2)
+    np.testing.assert_allclose(np.median(s.radii), 0.3, rtol=0.05)
+    assert len(s.node_of_point) == count
+
+
+@pytest.mark.parametrize("noise", [0.1, 0.25], ids=str)
+def test_a_noisy_trunk_is_one_strand(noise: float) -> None:
+    """With noise of a quarter of the radius it has had eight ends; the curve now stays within a third of the axis."""
+    s = extract_skeleton(contract(tube(60_000, 3.0, noise)))
+    assert (s.components, s.loops, s.ends) == (1, 0, 2)
+    assert np.linalg.norm(s.nodes[:, :2], axis=1).max() < RADIUS / 3
+
+
+def test_small_clouds_stay_as_they_are_and_all_can_be_asked_for() -> None:
+    points = tube(ENOUGH, 1.0)
+    for cloud, most in ((points, None), (np.concatenate([points, points + 9]), 0)):
+        same = thinned(cloud, most)
+        assert same.points is cloud
+        np.testing.assert_array_equal(same.rows, np.arange(len(cloud)))
+
+
+def test_every_point_goes_into_one_mean_and_a_mean_goes_by_the_nearest() -> None:
+    points = tube(30_000, 1.0, 0.05)
+    few = thinned(points, None)
+    assert 200 < len(few.rows) < 10_000
+    np.testing.assert_array_equal(few.place[few.rows], np.arange(len(few.rows)))
+    away = np.linalg.norm(points - few.points[few.place], axis=1)
+    for place in (0, len(few.rows) // 2):
+        members = np.flatnonzero(few.place == place)
+        np.testing.assert_allclose(few.points[place], points[members].mean(axis=0))
+        assert away[few.rows[place]] == away[members].min()
+    out = np.linalg.norm(few.points[:, :2], axis=1)
+    assert out.std() < 0.6 * np.linalg.norm(points[:, :2], axis=1).std()  # noise is averaged
+
+
+def test_a_twig_beside_a_thick_trunk_keeps_its_points() -> None:
+    """The twig is as thick as the points are apart, the trunk a hundred times; a grid for both would lose one."""
+    trunk, twig = tube(40_000, 3.0, radius=0.5), tube(60, 1.0, radius=0.008) + [2.0, 0, 1.0]
+    few = thinned(np.concatenate([trunk, twig]), None)
+    assert (few.rows < 40_000).sum() < 20_000
+    assert (few.rows >= 40_000).sum() > 55
+
+
+def test_two_sheets_stay_apart() -> None:
+    """No mean lies between two coaxial tubes, five spacings apart."""
+    inner, outer = tube(30_000, 1.0), tube(30_000, 1.0, radius=RADIUS * 1.25, seed=1)
+    out = np.linalg.norm(thinned(np.concatenate([inner, outer]), None).points[:, :2], axis=1)
+    assert (np.abs(out / RADIUS - 1.125) > 0.05).all()
+
+
+def test_turning_and_scaling_change_no_choice_and_files_say_the_same(tmp_path: Path) -> None:
+    points = tube(25_000, 1.0, 0.05)
+    few = thinned(points, None)
+    turned = thinned(3 * points @ Rotation.from_rotvec([1, 2, 3]).as_matrix().T + 5, None)
+    np.testing.assert_array_equal(few.rows, turned.rows)
+    c = contract(np.concatenate([points, points[:50]]))  # with duplicates
+    write_contraction(tmp_path / "c.ply", c)
+    one, other = extract_skeleton(c), extract_skeleton(read_contraction(tmp_path / "c.ply"))
+    np.testing.assert_array_equal(one.node_of_point, other.node_of_point)
+    np.testing.assert_allclose(one.nodes, other.nodes, atol=1e-9)
+
+
+def test_so_many_points_at_most() -> None:
+    shape = shape_graph("hand")
+    cloud = make_shape(shape, ShapeParams(count=30_000))[0]
+    assert len(thinned(cloud, 5000).rows) <= 5000 < len(thinned(cloud, None).rows)
+    c = contract(cloud, RobustParams(max_points=5000))
+    assert len(c.points) <= 5000
+    assert agreement(extract_skeleton(c), shape).topology_right

@@ -1,0 +1,199 @@
+"""Large clouds, thinned to what their surface needs: where points are many, or noisy, cells of them give one mean each.
+
+Cells of doubling size, from a few points to whole limbs, are looked at
+together with the eleven nearest of their size: the ratio of the two lesser
+variances of all their points says how flat the surface is at that size. Of a
+clean tube it is a sixteenth of the squared ratio of the neighbourhood's radius to
+the tube's, so it grows with the size of the cells; of noise it is near one and
+falls, until the surface emerges. Every place takes the largest cells that are
+still flat, or, where noise leaves none flat, the smallest that are nearly as flat
+as any. A gap between two sheets, a twig, an edge are not flat at cells of their
+own size, so that smaller cells keep them, or single points.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tiskel.arrays import TINY, Indices, Lists, Numbers, Points, Table
+from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
+from tiskel.geometry.spacing import spacings_from
+from tiskel.methods.robust.network import own_axes
+from tiskel.methods.trace import Trace
+
+# Found by trial on a half torus, trunks with noise of a tenth and a quarter, and shapes of the gallery, 30 000 to
+# 262 144 points.
+ENOUGH = 20_000  # points; clouds of no more are taken as they are, they cost little
+AROUND = 12  # cells whose points are looked at together, the cell itself included
+FINEST = 2.0  # spacings: side of the smallest cells
+FLAT = 0.02  # ratio of the lesser variances; flatter cells may be larger: their side is a quarter of a tube's radius
+NEARLY = 2.2  # times the least ratio of all sizes, for a size to be as good as any
+SHAPELESS = 0.6  # ratio that no size of cells is below, as where there is no surface: nothing is thinned
+VOLUME = 0.8  # ratio above which cells show a volume of noise, not yet the surface in it
+FEW = 3.2  # a volume of N points seems flatter than it is, by 1 + FEW / sqrt(N); measured on 12 to 700 points
+SLIVER = 0.4  # of the points that the cells about a cell have in the mean; cells with fewer are no cells of their own
+LINEAR = 0.6  # (s1 - s2) / s1 of the root variances: larger is a wire, of which nothing is thinned
+SIZES = 12  # of cells at most, each twice as large as the last
+FEWEST = 40  # cells of a size; with fewer they are larger than limbs
+DIGITS = 6  # of distances from a mean in the largest; what is alike to so many is equally far
+CHUNK = 65_536  # cells whose neighbourhoods are summed at once, to bound memory
+
+
+@dataclass(frozen=True)
+class Thinned:
+    """A cloud of fewer points, each the mean of some of the given ones.
+
+    Attributes
+    ----------
+    points : (m, 3) float64
+        The means.
+    rows : (m,) int32
+        The row of the given cloud that each mean goes by: the nearest of those it is made of. Ascending.
+    place : (n,) int32
+        The mean that each given point went into.
+    """
+
+    points: Points
+    rows: Indices
+    place: Indices
+
+    def whole(self, trace: Trace, cloud: Points) -> Trace:
+        """Return the trace of this cloud as one of the given cloud (n, 3), whose other points were merged into it."""
+        if len(self.rows) == len(cloud):
+            return trace
+        into = self.rows[self.place]
+        gone = into != np.arange(len(cloud))
+        return replace(
+            trace, cloud=cloud, rows=self.rows,
+            merged_into=np.where(gone, into, -1).astype(np.int32), merged_step=np.where(gone, 1, -1).astype(np.int32),
+            history=tuple((self.rows, places) for _, places in trace.history),
+        )  # fmt: skip
+
+
+def thinned(points: Points, most: int | None) -> Thinned:
+    """Return a cloud (n, 3) as its surface needs it.
+
+    most is how many points there are to be at most, None for as many as needed,
+    0 for all that are given.
+    """
+    everyone = np.arange(len(points), dtype=np.int32)
+    if most == 0 or len(points) <= (ENOUGH if most is None else min(most, ENOUGH)):
+        return Thinned(points, everyone, everyone)
+    own = np.ascontiguousarray((points - points.mean(axis=0)) @ own_axes(points).T)
+    ratios, doubt, cells = _sizes(own)
+    size = _chosen(ratios, doubt)
+    while True:
+        key = np.take_along_axis(cells, size[None], axis=0)[0] * (len(cells) + 1) + size
+        place = np.unique(key, return_inverse=True)[1]
+        if most is None or place.max() < most or size.min() == len(cells) - 1:
+            return _means(points, own, _without_slivers(own, place.ravel().astype(np.int32)))
+        size = np.minimum(size + 1, len(cells) - 1)
+
+
+def remembered(trace: Trace) -> Points:
+    """Return the points (m, 3) that a trace was made from: means of those that were merged, not of duplicates."""
+    once = trace.merged_step != 0
+    return _averaged(trace.cloud[once], trace.survivor_of()[once], len(trace.rows))
+
+
+def _without_slivers(points: Points, place: Indices) -> Indices:
+    """Return (n,) the places, those of cells with far fewer points than the cells about them given to the nearest."""
+    from scipy.spatial import cKDTree
+
+    each = np.bincount(place)
+    means = _averaged(points, place, len(each))
+    usual = each[nearest_neighbours(means, min(AROUND, len(means)))[0]].mean(axis=1)
+    kept = np.flatnonzero(each >= SLIVER * usual)
+    rank = np.full(len(each), -1, np.int32)
+    rank[kept] = np.arange(len(kept))
+    found = rank[place]
+    lost = np.flatnonzero(found < 0)
+    found[lost] = cKDTree(means[kept]).query(points[lost])[1]
+    return found
+
+
+def _means(points: Points, own: Points, place: Indices) -> Thinned:
+    """Return the means of the points by place; own (n, 3) are the points in their own axes, to break ties by."""
+    means = _averaged(points, place, int(place.max()) + 1)
+    away = ((points - means[place]) ** 2).sum(axis=1)
+    farthest = np.zeros(len(means))
+    np.maximum.at(farthest, place, away)
+    away = np.round(away / np.maximum(farthest[place], TINY), DIGITS)  # two points are equally far from their mean
+    order = np.lexsort((*own.T, away, place))
+    rows = order[np.unique(place[order], return_index=True)[1]].astype(np.int32)
+    by_row = np.argsort(rows, kind="stable").astype(np.int32)
+    rank = np.empty(len(rows), np.int32)
+    rank[by_row] = np.arange(len(rows), dtype=np.int32)
+    return Thinned(np.ascontiguousarray(means[by_row]), rows[by_row], rank[place])
+
+
+def _averaged(points: Points, place: Indices, count: int) -> Points:
+    each = np.bincount(place, minlength=count)[:, None]
+    return np.asarray(np.stack([np.bincount(place, x, minlength=count) for x in points.T], axis=1) / each)
+
+
+def _sizes(points: Points) -> tuple[Table, Table, Lists]:
+    """Return (s, n) for every size of cells how flat it is about each point, its doubt, and each point's cell.
+
+    Linear is inf; the doubt is what few points in a volume would have to be
+    multiplied by.
+    """
+    nearest, squares = nearest_neighbours(points, AROUND)
+    spacing = float(np.median(spacings_from(squares)))
+    variances = principal_axes(points, nearest)[0]
+    ratios, cells, many = [_flatness(variances, nearest)], [np.arange(len(points))], [np.full(len(points), AROUND)]
+    corner = np.floor((points - points.min(axis=0)) / (FINEST * spacing)).astype(np.int64)
+    sums = np.concatenate([np.ones((len(points), 1)), points, _products(points)], axis=1)
+    cell = np.arange(len(points))
+    for _ in range(SIZES):
+        corner, into = np.unique(corner, axis=0, return_inverse=True)
+        if len(corner) < FEWEST:
+            break
+        into = into.ravel()
+        sums = np.stack([np.bincount(into, x, minlength=len(corner)) for x in sums.T], axis=1)
+        cell = into[cell]
+        nearest = nearest_neighbours(np.ascontiguousarray(sums[:, 1:4] / sums[:, :1]), AROUND)[0]
+        ratios.append(_flatness(_variances(sums, nearest), nearest)[cell])
+        cells.append(cell)
+        many.append(sums[nearest, 0].sum(axis=1)[cell])
+        corner //= 2
+    return np.array(ratios), 1 + FEW / np.sqrt(np.array(many)), np.array(cells)
+
+
+def _products(points: Points) -> Table:
+    return np.asarray((points[:, :, None] * points[:, None, :]).reshape(-1, 9))
+
+
+def _variances(sums: Table, nearest: Lists) -> Table:
+    """Return (m, 3) the descending variances of all points in the cells (m, k) about each; sums (m, 13) are theirs."""
+    found = []
+    for start in range(0, len(nearest), CHUNK):
+        total = sums[nearest[start : start + CHUNK]].sum(axis=1)
+        mean = total[:, 1:] / total[:, :1]
+        found.append(np.linalg.eigvalsh((mean[:, 3:] - _products(mean[:, :3])).reshape(-1, 3, 3))[:, ::-1])
+    return np.asarray(np.maximum(np.concatenate(found), 0))
+
+
+def _flatness(variances: Table, nearest: Lists) -> Numbers:
+    """Return (m,) the ratio of the lesser variances, in the mean over the cells about each; inf where linear."""
+    ratio = variances[:, 2] / np.maximum(variances[:, 1], TINY)
+    root = np.sqrt(np.maximum(variances[:, :2], 0))
+    linear = root[:, 1] < (1 - LINEAR) * root[:, 0]
+    ratio = ratio[nearest].mean(axis=1)
+    ratio[linear] = np.inf
+    return np.asarray(ratio)
+
+
+def _chosen(ratios: Table, doubt: Table) -> Indices:
+    """Return (n,) the size of the cells that each point goes into, 0 for itself alone."""
+    known = np.cumprod(np.isfinite(ratios), axis=0).astype(bool)  # what is linear stays so at larger sizes
+    ratios = np.where(known, ratios, np.inf)
+    flat = ratios <= FLAT
+    first = flat.argmax(axis=0)
+    after = np.arange(len(ratios))[:, None] >= first
+    last = first + np.cumprod(np.where(after, flat, True), axis=0).sum(axis=0) - first - 1
+    ratios = ratios * doubt
+    least = ratios.min(axis=0)
+    nearly = (ratios <= np.minimum(NEARLY * least, VOLUME)).argmax(axis=0)
+    chosen = np.where(flat.any(axis=0), last, np.where(least < SHAPELESS, nearly, 0))
+    return np.asarray(chosen, np.int64)
