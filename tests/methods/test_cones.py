@@ -16,7 +16,7 @@ from tiskel.methods.robust.branches import (
     with_missed_branches,
     with_tips,
     without_contained_ends,
-    without_explained_branch,
+    without_explained_branches,
     without_spurs,
 )
 from tiskel.methods.robust.bridges import bridged
@@ -172,10 +172,10 @@ def y_curve(arm: float) -> tuple[Points, ConeCurve, Sections]:
 def test_a_branch_within_the_rest_is_no_branch() -> None:
     points, curve, sections = y_curve(0.8)
     network = replace(neighbour_network(points, 14), spacings=np.full(len(points), 0.05))
-    fewer = without_explained_branch(curve, network, sections, USUAL.least_branch)
+    fewer = without_explained_branches(curve, network, sections, USUAL.least_branch)
     assert fewer is not None
     assert len(fewer.nodes) == 7
-    assert without_explained_branch(fewer, network, sections, USUAL.least_branch) is None
+    assert without_explained_branches(fewer, network, sections, USUAL.least_branch) is None
     assert len(without_spurs(curve, points, sections).nodes) == 8  # its points do reach the surface of the rod
     assert len(without_spurs(replace(curve, radii=curve.radii * 1.5), points, sections).nodes) == 7
 
@@ -184,7 +184,7 @@ def test_a_branch_that_sticks_out_stays() -> None:
     shape = shape_graph("y")
     points = make_shape(shape, ShapeParams(count=900))[0]
     curve, sections = curve_of(shape.nodes, shape.radii, shape.edges, nearest_node(points, shape.nodes))
-    assert without_explained_branch(curve, neighbour_network(points, 14), sections, USUAL.least_branch) is None
+    assert without_explained_branches(curve, neighbour_network(points, 14), sections, USUAL.least_branch) is None
 
 
 def test_an_end_that_falls_short_grows_to_the_tip() -> None:

@@ -69,38 +69,68 @@ def without_contained_ends(curve: ConeCurve, slack: float = 0.0) -> ConeCurve:
     return contract_nodes(curve, into)
 
 
-def without_explained_branch(
+def without_explained_branches(
     curve: ConeCurve, network: Network, sections: Sections, least: float
 ) -> ConeCurve | None:  # fmt: skip
-    """Contract the branch that sticks out least of what the rest of the curve explains; None where all do enough.
+    """Contract the branches that stick out too little of what the rest of the curve explains; None where all do enough.
 
-    least is what a branch has to stick out, in the smaller of its radius and its
-    junction's.
+    The least first, and with it others far enough away not to explain each
+    other. least is what a branch has to stick out, in the smaller of its radius
+    and its junction's.
     """
     branches, degree = [], curve.degrees
-    owner = curve.node_of_section[sections.section]
+    rows, stops = _rows_of_nodes(curve.node_of_section[sections.section], len(curve.nodes))
     for path in curve.paths_from(ends=True):
         if degree[path[-1]] > 2:
             radius = min(float(curve.radii[path[:-1]].max()), float(curve.radii[path[-1]]))
             asked = max(least * radius, STICKS_OUT_SPACINGS * network.spacing)
-            branches.append((_protrusion(curve, network.points, owner, path) / asked, path))
-    first = min(branches, key=lambda branch: (branch[0], int(branch[1][0])), default=None)
-    return None if first is None or first[0] >= 1 else without_path(curve, first[1])
+            own = [rows[stops[node] : stops[node + 1]] for node in path]
+            share = _protrusion(curve, network.points, own, path) / asked
+            if share < 1:
+                branches.append((share, int(path[0]), path))
+    into, chosen = np.arange(len(curve.nodes), dtype=np.int32), list[tuple[Numbers, float]]()
+    for _, _, path in sorted(branches, key=lambda branch: branch[:2]):
+        centre = curve.nodes[path].mean(axis=0)
+        reach = float((np.linalg.norm(curve.nodes[path] - centre, axis=1) + curve.radii[path]).max())
+        if all(float(np.linalg.norm(centre - other)) > reach + radius for other, radius in chosen):
+            chosen.append((centre, reach))
+            into[path[:-1]] = path[-1]
+    return contract_nodes(curve, into) if chosen else None
 
 
-def _protrusion(curve: ConeCurve, points: Points, owner: Indices, path: Indices) -> float:
-    """Return how far the points of a branch lie from the surface of the rest, 0 where it has none."""
-    own = np.isin(owner, path[:-1])
-    near = owner == path[-1]
-    near[near] = np.linalg.norm(points[near] - curve.nodes[path[0]], axis=1) < HANGING * curve.radii[path[0]]
-    rows: Indices = np.flatnonzero(own | near).astype(np.int32)
+def _rows_of_nodes(owner: Indices, count: int) -> tuple[Indices, Indices]:
+    """Return the rows of the cloud in the order of their nodes, and where each node's begin (count + 1,)."""
+    order = np.argsort(owner, kind="stable").astype(np.int32)
+    return order, np.searchsorted(owner[order], np.arange(count + 1)).astype(np.int32)
+
+
+def _protrusion(curve: ConeCurve, points: Points, own: list[Indices], path: Indices) -> float:
+    """Return how far the points of a branch lie from the surface of the rest, 0 where it has none.
+
+    own are the rows of the cloud of every node of the path.
+    """
+    at_joint = own[-1]
+    near = np.linalg.norm(points[at_joint] - curve.nodes[path[0]], axis=1) < HANGING * curve.radii[path[0]]
+    rows = np.sort(np.concatenate([*own[:-1], at_joint[near]]))
     rest: Indices = np.flatnonzero(~np.isin(curve.edges, path[:-1]).any(axis=1)).astype(np.int32)
     if not len(rows):
         return 0.0
     if not len(rest):
         return np.inf
+    rest = _possible(curve, rest, points[rows])
     one_list = np.zeros(len(rows), np.int32)
     return float(np.quantile(foot_points(curve, points, rows, one_list, rest[None], signed=True).residual, FARTHEST))
+
+
+def _possible(curve: ConeCurve, edges: Indices, points: Points) -> Indices:
+    """Return the edges whose cones may be the deepest about some of the points (n, 3): no other is for any."""
+    centre = points.mean(axis=0)
+    extent = float(np.linalg.norm(points - centre, axis=1).max())
+    ends, radii = curve.nodes[curve.edges[edges]], curve.radii[curve.edges[edges]]
+    away = np.linalg.norm(ends.mean(axis=1) - centre, axis=1)
+    half = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2
+    most = (away + extent - radii.mean(axis=1)).min()  # the ball in the middle of an edge is part of its cone
+    return np.asarray(edges[away - extent - half - radii.max(axis=1) <= most])
 
 
 def with_tips(fit: ConeFit, network: Network, sections: Sections) -> ConeCurve | None:

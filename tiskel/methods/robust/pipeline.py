@@ -5,7 +5,7 @@ from tiskel.methods.robust.branches import (
     with_missed_branches,
     with_tips,
     without_contained_ends,
-    without_explained_branch,
+    without_explained_branches,
     without_spurs,
 )
 from tiskel.methods.robust.bridges import bridged
@@ -46,7 +46,7 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
     curve = without_filled_cycles(found.curve, network, sections, solid, fitted=True)
     if len(curve.nodes) < len(found.curve.nodes):
         curve = fit(curve, again).curve
-    while (fewer := without_explained_branch(curve, network, sections, params.least_branch)) is not None:
+    while (fewer := without_explained_branches(curve, network, sections, params.least_branch)) is not None:
         curve = fit(fewer, again).curve
     found = fit(placed_junctions(curve, solid), again)  # now that the branches are known
     for _ in range(params.grow_ends):

@@ -27,6 +27,8 @@ THIN = 2.2  # spacings: median radius up to which limbs are wires [generated tre
 CUT = 3.0  # most that a point counts as unexplained
 CROWN = 15  # ends from which on a body is tree-like [tubes with loops, sampled coarsely, have up to 9]
 NO_WORSE = 1.5  # of what tubes leave unexplained, what wires may leave of a crown [trees to 1.36, sheets from 2.9]
+THICKET = 40  # ends of a crown in which loops that no handle confirms are contacts of limbs
+SLENDER = 3.0  # spacings: median radius of such limbs, at most
 BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
 
 
@@ -39,8 +41,8 @@ def surely_wires(network: Network) -> bool:
 
 
 def maybe_wires(found: Candidate) -> bool:
-    """Tell whether wires are worth a try: where tubes enclose nothing that could be called an inside."""
-    return not found.solid.trusted
+    """Tell whether wires are worth a try: where tubes enclose no inside, or have loops that no handle confirms."""
+    return not found.solid.trusted or found.curve.loops > (found.solid.handles or 0)
 
 
 def wires(network: Network, solid: Solid, params: RobustParams) -> Candidate:
@@ -56,8 +58,11 @@ def wires(network: Network, solid: Solid, params: RobustParams) -> Candidate:
 
 def shorter(thin: Candidate, thick: Candidate) -> bool:
     """Tell whether wires describe a cloud better than tubes do."""
+    confirmed = thick.solid.handles or 0
+    if thick.curve.loops > confirmed and thin.curve.ends >= THICKET and _thickness(thin) < SLENDER:
+        return True
     worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
-    return _thickness(thin) < THIN and _unexplained(thin) < worse * _unexplained(thick)
+    return not thick.solid.trusted and _thickness(thin) < THIN and _unexplained(thin) < worse * _unexplained(thick)
 
 
 def _thickness(found: Candidate) -> float:

@@ -13,7 +13,7 @@ from tiskel.geometry.thinning import thinned
 from tiskel.methods.robust.body.centres import centred, not_round
 from tiskel.methods.robust.body.limbs import without_corners, zipped
 from tiskel.methods.robust.body.strands import evened, strands_of, with_sections
-from tiskel.methods.robust.branches import with_tips, without_contained_ends, without_explained_branch
+from tiskel.methods.robust.branches import with_tips, without_contained_ends, without_explained_branches
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.fit import ConeFit, fit_cones
@@ -45,7 +45,7 @@ def body_curve(network: Network, solid: Solid, params: RobustParams) -> Candidat
     again = max(1, params.rounds // 2)
     found = fit(without_contained_ends(fit(curve, params.rounds).curve), again)
     least = LIMB * params.least_branch
-    while (fewer := without_explained_branch(found.curve, network, sections, least)) is not None:
+    while (fewer := without_explained_branches(found.curve, network, sections, least)) is not None:
         found = fit(zipped(fewer, body), again)
     for _ in range(params.grow_ends):
         longer = with_tips(found, network, sections)
