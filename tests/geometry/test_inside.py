@@ -7,7 +7,8 @@ from scipy.spatial import cKDTree
 from tiskel import MetricParams, ShapeParams, evaluate, make_shape, shape_graph
 from tiskel.arrays import Points
 from tiskel.geometry.curve import curve_samples
-from tiskel.geometry.oriented import OrientedCloud, oriented_cloud, propagated_signs, ring_areas
+from tiskel.geometry.oriented import OrientedCloud, oriented_cloud, ring_areas
+from tiskel.geometry.propagation import propagated_signs
 from tiskel.geometry.solid import betti_numbers, solid_handles
 from tiskel.metrics.barcode import barcode
 from tiskel.metrics.loops import count_loops

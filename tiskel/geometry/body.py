@@ -13,7 +13,6 @@ from tiskel.geometry.frames import unit
 from tiskel.geometry.thinning import SIDES, Grid
 
 # Found by trial on generated bodies: blocks and plates with holes, torsos, flat tubes, rings of rings.
-LEVEL = 0.3  # winding number inside; the middle one of those that handles are counted at
 MOST_CELLS = 100_000  # inside; of a finer grid every other place in each direction is taken
 LEAST_PART = 0.005  # of the largest part's cells; smaller ones are left out
 SIDEWAYS = 0.7  # weight of the mean length of rays, as logarithm, against that of the clearance
@@ -31,6 +30,8 @@ class Body:
     ----------
     inside : (i, j, k) bool
         The cells, without hollows.
+    level : float
+        Winding number above which they are inside.
     winding : (i, j, k) float64
         The winding number at each.
     origin : (3,) float64
@@ -44,6 +45,7 @@ class Body:
     """
 
     inside: Grid
+    level: float
     winding: Stack
     origin: Numbers
     step: float
@@ -127,7 +129,7 @@ class Body:
         return out
 
 
-def body_of(winding: Stack, origin: Numbers, step: float, points: Points) -> Body | None:
+def body_of(winding: Stack, origin: Numbers, step: float, points: Points, level: float) -> Body | None:
     """Return the inside of a surface, None where there is none.
 
     Parameters
@@ -140,21 +142,23 @@ def body_of(winding: Stack, origin: Numbers, step: float, points: Points) -> Bod
         From place to place, in the same unit.
     points : (n, 3) float64
         Of the surface.
+    level : float
+        Winding number above which places are inside.
 
     Returns
     -------
     Body or None
     """
-    if int((winding > LEVEL).sum()) > MOST_CELLS:
+    if int((winding > level).sum()) > MOST_CELLS:
         winding, step = winding[::2, ::2, ::2], 2 * step
-    inside = _whole(np.pad(winding > LEVEL, 1))[1:-1, 1:-1, 1:-1]
+    inside = _whole(np.pad(winding > level, 1))[1:-1, 1:-1, 1:-1]
     if not inside.any():
         return None
     cells = np.argwhere(inside)
     to_points = cKDTree(points).query(origin + cells * step)[0]
     to_outside = step * ndimage.distance_transform_edt(np.pad(inside, 1))[1:-1, 1:-1, 1:-1][inside]
-    winding = np.where(inside & (winding <= LEVEL), 1.0, winding)
-    return Body(inside, winding, origin, step, cells.astype(np.int32), np.minimum(to_points, to_outside))
+    winding = np.where(inside & (winding <= level), 1.0, winding)
+    return Body(inside, level, winding, origin, step, cells.astype(np.int32), np.minimum(to_points, to_outside))
 
 
 def shares_of_depth(body: Body, places: Points, directions: Points) -> Numbers:

@@ -65,6 +65,8 @@ class Solid:
         What they were counted on; None where there is no inside to speak of, or too many cells for it.
     closed : bool
         Whether a watertight mesh says that its surface has no hole.
+    level : float
+        Winding number above which the body is inside: the middle one of those with these handles, or fewest.
     """
 
     oriented: OrientedCloud
@@ -72,13 +74,14 @@ class Solid:
     handles: int | None
     grid: WindingGrid | None = None
     closed: bool = False
+    level: float = LEVELS[1]
 
     @cached_property
     def body(self) -> Body | None:
         """The cells of the grid inside, None where there is no grid."""
         if self.grid is None:
             return None
-        return body_of(self.grid.values, self.grid.origin, self.grid.step, self.oriented.points)
+        return body_of(self.grid.values, self.grid.origin, self.grid.step, self.oriented.points, self.level)
 
 
 def solid_of(surface: OrientedCloud, handles: int | None = None, closed: bool = False) -> Solid:
@@ -90,10 +93,16 @@ def solid_of(surface: OrientedCloud, handles: int | None = None, closed: bool = 
     order = np.lexsort(surface.points.T)  # parts that do not hang on the order of the rows
     thinned = [_thinned(surface, order[start::step], step) for start in range(min(step, PARTS))]
     grid, _ = _grid_of(thinned[0])
-    if handles is None and grid is not None:
-        counts = {_handles(grid)[0], *(solid_handles(part)[0] for part in thinned[1:])}
+    trusted = thinned[0].trusted or closed
+    if grid is None:
+        return Solid(surface, trusted, handles, None, closed)
+    found = _loops(grid)
+    if handles is None:
+        counts = {_handles(found)[0], *(solid_handles(part)[0] for part in thinned[1:])}
         handles = counts.pop() if len(counts) == 1 else None
-    return Solid(surface, thinned[0].trusted or closed, handles, grid, closed)
+    off = [abs(loops - (handles or 0)) for loops in found]
+    level = LEVELS[min(range(len(LEVELS)), key=lambda i: (off[i], abs(i - 1)))]
+    return Solid(surface, trusted, handles, grid, closed, level)
 
 
 def _thinned(surface: OrientedCloud, rows: npt.NDArray[np.intp], step: int) -> OrientedCloud:
@@ -117,11 +126,16 @@ def solid_handles(surface: OrientedCloud) -> tuple[int | None, str]:
         Why not; empty where they can.
     """
     grid, reason = _grid_of(surface)
-    return (None, reason) if grid is None else _handles(grid)
+    return (None, reason) if grid is None else _handles(_loops(grid))
 
 
-def _handles(grid: WindingGrid) -> tuple[int | None, str]:
-    found = [betti_numbers(grid.values > level)[1] for level in LEVELS]
+def _loops(grid: WindingGrid) -> list[int]:
+    """Return the loops at every level of the inside."""
+    return [betti_numbers(grid.values > level)[1] for level in LEVELS]
+
+
+def _handles(found: list[int]) -> tuple[int | None, str]:
+    """Return the handles that all levels agree on, or None and why there are none."""
     if len(set(found)) > 1:
         return None, f"{' or '.join(map(str, sorted(set(found))))} handles, depending on the level of the inside"
     return found[0], ""

@@ -16,7 +16,6 @@ REACH = 6.0  # clearances that a ray reaches at most: a section that is wider is
 CLOSED = 0.85  # share of the rays that get to the surface, at least
 WIDE = 1.6  # of the shortest ray, that rays are long in the mean, from which on a section is not round about a node
 PLACES = 36  # where a ray is probed
-SURFACE = 0.4  # winding number at which a ray ends
 FURTHEST = 0.5  # clearances that a node moves in a round at most
 KEPT = 0.9  # of the clearance, that a move leaves at least
 TURN = np.arange(RAYS) * (2 * np.pi / RAYS)
@@ -87,9 +86,9 @@ def _lengths(places: Points, rays: Stack, body: Body) -> tuple[Table, Masks]:
     way = far[:, None] * share
     probes = places[:, None, None] + rays[:, :, None] * way[:, None, :, None]
     depth = body.winding_at(probes.reshape(-1, 3)).reshape(*rays.shape[:2], PLACES)
-    out = depth < SURFACE
+    out = depth < body.level
     ends = out.any(axis=2)
     first = np.where(ends, out.argmax(axis=2), PLACES - 1)[..., None]
     after, before = (np.take_along_axis(depth, np.maximum(first - back, 0), axis=2)[..., 0] for back in (0, 1))
-    back = np.clip((SURFACE - after) / np.maximum(before - after, TINY), 0, 1) * ends
+    back = np.clip((body.level - after) / np.maximum(before - after, TINY), 0, 1) * ends
     return np.asarray((first[..., 0] + 1 - back) / PLACES * far[:, None]), np.asarray(ends)
