@@ -109,8 +109,11 @@ def _clearly(other: Candidate, best: Candidate) -> bool:
 
 
 def _alike(inner: Candidate, best: Candidate) -> bool:
-    """Tell whether a curve from the inside has the components of the best, and its loops where handles are unknown."""
-    known = inner.solid.handles is not None
+    """Tell whether a curve from the inside has the components of the best, and its loops where handles may be wrong.
+
+    They are unknown, or the scan has gaps, which handles fall apart at.
+    """
+    known = inner.solid.handles is not None and best.gaps == 0
     return inner.curve.components == best.curve.components and (known or inner.curve.loops == best.curve.loops)
 
 

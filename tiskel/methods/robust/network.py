@@ -19,6 +19,7 @@ from tiskel.geometry.spacing import spacings_from
 NORMAL_NEIGHBOURS = 12  # points, itself included, whose plane gives a point's normal [14, 14]
 AREA_NEIGHBOURS = 8  # points in the disc about a point that gives its area [1, 0]
 FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour [10, 4]
+FEWER = 0.5  # of the points without an inside and an outside that propagated normals leave, to be taken
 ALONG_NORMALS = 0.75  # cosine to both normals: such a step leaves the surface at both of its ends [13, 11]
 
 
@@ -100,14 +101,14 @@ class Network:
     def oriented(self, contracted: Points) -> OrientedCloud:
         """Return the cloud with normals away from where the points (n, 3) contract to, or with better ones.
 
-        As a mesh has them; or propagated ones, where these have as many points
-        between an inside and an outside: points of a bulky body hardly contract.
+        As a mesh has them; or propagated ones, where these leave clearly fewer points
+        without an inside and an outside: points of a bulky body hardly contract.
         """
         if self.surface is not None and self.surface.outward:
             return OrientedCloud(self.points, self.normals, self.areas)
         near = np.ascontiguousarray(self.neighbours[:, :NORMAL_NEIGHBOURS])
         away, propagated = oriented_either_way(self.points, self.normals, self.areas, contracted, near)
-        return away if away.consistency > propagated.consistency else propagated
+        return propagated if 1 - propagated.consistency <= FEWER * (1 - away.consistency) else away
 
 
 def own_axes(points: Points) -> Table:

@@ -58,11 +58,11 @@ def wires(network: Network, solid: Solid, params: RobustParams) -> Candidate:
 
 def shorter(thin: Candidate, thick: Candidate) -> bool:
     """Tell whether wires describe a cloud better than tubes do."""
-    confirmed = thick.solid.handles or 0
-    if thick.curve.loops > confirmed and thin.curve.ends >= THICKET and _thickness(thin) < SLENDER:
-        return True
     worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
-    return not thick.solid.trusted and _thickness(thin) < THIN and _unexplained(thin) < worse * _unexplained(thick)
+    if _unexplained(thin) >= worse * _unexplained(thick):
+        return False
+    contacts = thick.curve.loops > (thick.solid.handles or 0) and thin.curve.ends >= THICKET
+    return _thickness(thin) < (SLENDER if contacts else THIN) and (contacts or not thick.solid.trusted)
 
 
 def _thickness(found: Candidate) -> float:
