@@ -24,6 +24,7 @@ from tiskel.methods.trace import Trace
 # Found by trial on a half torus, trunks with noise of a tenth and a quarter, and shapes of the gallery, 30 000 to
 # 262 144 points.
 ENOUGH = 20_000  # points; clouds of no more are taken as they are, they cost little
+LARGEST = 300_000  # points; of a million, bands of single points were left that looked like wires: taken as they are
 AROUND = 12  # cells whose points are looked at together, the cell itself included
 FINEST = 2.0  # spacings: side of the smallest cells
 FLAT = 0.02  # ratio of the lesser variances; flatter cells may be larger: their side is a quarter of a tube's radius
@@ -33,8 +34,11 @@ VOLUME = 0.8  # ratio above which cells show a volume of noise, not yet the surf
 FEW = 3.2  # a volume of N points seems flatter than it is, by 1 + FEW / sqrt(N); measured on 12 to 700 points
 SLIVER = 0.4  # of the points that the cells about a cell have in the mean; cells with fewer are no cells of their own
 LINEAR = 0.6  # (s1 - s2) / s1 of the root variances: larger is a wire, of which nothing is thinned
+MOSTLY = 0.5  # share of the cells about a cell that are linear, from which on it is of a wire
 SIZES = 12  # of cells at most, each twice as large as the last
 FEWEST = 40  # cells of a size; with fewer they are larger than limbs
+CREASE = 0.3  # ratio at a crease, whatever the size of the cells, at most; a right angle has 0.25
+FINER = 2  # sizes that the cells at a crease may be smaller than those about them
 DIGITS = 6  # of distances from a mean in the largest; what is alike to so many is equally far
 CHUNK = 65_536  # cells whose neighbourhoods are summed at once, to bound memory
 
@@ -77,11 +81,12 @@ def thinned(points: Points, most: int | None) -> Thinned:
     0 for all that are given.
     """
     everyone = np.arange(len(points), dtype=np.int32)
-    if most == 0 or len(points) <= (ENOUGH if most is None else min(most, ENOUGH)):
+    untried = most is None and len(points) > LARGEST
+    if most == 0 or untried or len(points) <= (ENOUGH if most is None else min(most, ENOUGH)):
         return Thinned(points, everyone, everyone)
     own = np.ascontiguousarray((points - points.mean(axis=0)) @ own_axes(points).T)
     ratios, doubt, cells = _sizes(own)
-    size = _chosen(ratios, doubt)
+    size = _levelled(_chosen(ratios, doubt), ratios, cells)
     while True:
         key = np.take_along_axis(cells, size[None], axis=0)[0] * (len(cells) + 1) + size
         place = np.unique(key, return_inverse=True)[1]
@@ -180,7 +185,7 @@ def _flatness(variances: Table, nearest: Lists) -> Numbers:
     root = np.sqrt(np.maximum(variances[:, :2], 0))
     linear = root[:, 1] < (1 - LINEAR) * root[:, 0]
     ratio = ratio[nearest].mean(axis=1)
-    ratio[linear] = np.inf
+    ratio[linear[nearest].mean(axis=1) > MOSTLY] = np.inf
     return np.asarray(ratio)
 
 
@@ -197,3 +202,12 @@ def _chosen(ratios: Table, doubt: Table) -> Indices:
     nearly = (ratios <= np.minimum(NEARLY * least, VOLUME)).argmax(axis=0)
     chosen = np.where(flat.any(axis=0), last, np.where(least < SHAPELESS, nearly, 0))
     return np.asarray(chosen, np.int64)
+
+
+def _levelled(size: Indices, ratios: Table, cells: Lists) -> Indices:
+    """Return the sizes (n,), not much smaller at creases than about them: bands of single points look like wires."""
+    about = cells[min(int(np.median(size)) + 1, len(cells) - 1)]
+    usual = (np.bincount(about, size) / np.bincount(about))[about]
+    least = np.maximum(np.floor(usual).astype(np.int64) - FINER, 0)
+    there = np.take_along_axis(ratios, least[None], axis=0)[0]
+    return np.where(there < CREASE, np.maximum(size, least), size)
