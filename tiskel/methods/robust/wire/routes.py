@@ -60,7 +60,7 @@ def _roots(points: Points, part: Indices, root: Numbers | None) -> Indices:
     nearest = -1 if root is None else int(((points - root) ** 2).sum(axis=1).argmin())
     roots = []
     for number in np.argsort(-np.bincount(part[part >= 0]), kind="stable"):
-        rows = np.flatnonzero(part == number)
+        rows: Indices = np.flatnonzero(part == number).astype(np.int32)
         if len(rows):
             given = nearest >= 0 and part[nearest] == number
             roots.append(nearest if given else _most_crowded(points, rows, crowd[rows]))
