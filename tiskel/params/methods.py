@@ -111,6 +111,7 @@ class RobustParams(ContractionParams):
         return min(count, self.neighbours)
 
     def placed(self, place: Callable[[Place], Place]) -> "RobustParams":
+        """Return the settings with the root and the sensor in other coordinates."""
         root = None if self.root is None else place(self.root)
         return replace(self, root=root, seen_from=None if self.seen_from is None else place(self.seen_from))
 

@@ -28,7 +28,7 @@ from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.solid import solid_of
 from tiskel.methods.robust.body import body_curve
-from tiskel.methods.robust.checks import Candidate, radius_sources
+from tiskel.methods.robust.checks import Candidate, radii_of, radius_sources
 from tiskel.methods.robust.doubts import doubts_of
 from tiskel.methods.robust.fronts import contract_by_fronts, further_front
 from tiskel.methods.robust.judged import Judged
@@ -131,7 +131,7 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
     contracted = trace.points.copy()
     contracted[fit.rows] = fit.places @ network.axes
     nodes = curve.nodes @ network.axes
-    graph = CurveGraph(nodes, curve.edges, curve.radii, curve.bridged, radius_sources(best), regimes_of(best))
+    graph = CurveGraph(nodes, curve.edges, radii_of(best), curve.bridged, radius_sources(best), regimes_of(best))
     judged = Judged(
         graph=graph,
         points=trace.cloud[trace.rows],

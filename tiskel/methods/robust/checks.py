@@ -25,6 +25,7 @@ OFF_MIDDLE = 0.7  # of the depth that the body has across the curve; places less
 THIN = 2.0  # spacings in a radius; thinner places say nothing of inside and outside [0, 1]
 UNSURE = 0.05  # misfit that a loop over a gap is worth where the body has no handle [0, 0; for patches]
 FAR = 0.35  # local radii; points further from the cones count against a curve [1, 2]
+NO_LESS = 0.5  # spacings; what a bound is at least: of limbs thinner than that the points cannot tell how thin they are
 SPARSE = 1.5  # spacings in a radius; thinner nodes have too few points [0, 0; what radii are called]
 
 
@@ -137,3 +138,13 @@ def radius_sources(found: Candidate) -> npt.NDArray[np.uint8]:
     bridges = np.bincount(curve.edges[curve.bridged].ravel(), minlength=len(curve.nodes))
     sources[(bridges > 0) & (bridges == curve.degrees)] = RadiusSource.MODELLED
     return sources
+
+
+def radii_of(found: Candidate) -> Numbers:
+    """Return (v,) the radii: bounds of wires are no less than their points can tell."""
+    curve, fit = found.curve, found.fit
+    size = np.bincount(fit.nodes, minlength=len(curve.nodes))
+    total = np.bincount(fit.nodes, found.network.spacings[fit.rows], minlength=len(curve.nodes))
+    spacing = np.minimum(np.where(size > 0, total / np.maximum(size, 1), np.inf), found.network.spacing)
+    bounds = (curve.regimes == Regime.WIRE) & (curve.radius_sources == RadiusSource.BOUNDED)
+    return np.asarray(np.where(bounds, np.maximum(curve.radii, NO_LESS * spacing), curve.radii))

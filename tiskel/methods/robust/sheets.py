@@ -5,7 +5,8 @@ it have their axis there. Of a pipe with a third of its turn seen that is its ax
 Of a leaf, or of the front of a body in a depth image, it is a place in the air
 behind a thing whose thickness nobody saw. Where the points of a node cover less
 than that of the turn about it, the node goes to the middle of its points on the
-sheet; its radius is half their width, a bound.
+sheet; its radius is half their width, a bound. Where the sensor is known, so does
+a node that stands between it and its points: no body can be where it saw through.
 """
 
 from dataclasses import replace
@@ -25,7 +26,7 @@ MIDDLE = 0.9  # of a node's points, the middle by angle, that count: noise besid
 FEWEST = 6  # points that tell the turn
 NEAREST = 6  # points whose mean is the place on the sheet
 WIDTH = 0.9  # quantile of the distance of its points across the curve: half the width
-FACING = 0.9  # share of a node's points that face a known sensor, from which on nothing but their side was seen
+BEHIND = 0.9  # share of a node's points beyond it, from a known sensor, from which on the sensor saw through its place
 
 
 def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) -> Candidate:
@@ -36,7 +37,7 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
     points, owner = found.network.points[fit.rows], fit.nodes
     offset, sheet = _sheets(found)
     if seen_from is not None:
-        sheet &= _one_sided(points, offset, owner, len(curve.nodes), found.network.placed(seen_from))
+        sheet |= _seen_through(points, offset, owner, len(curve.nodes), found.network.placed(seen_from))
     if not sheet.any():
         return found
     nodes, radii = _middles(curve, points, owner, offset, np.flatnonzero(sheet).astype(np.int32))
@@ -97,11 +98,12 @@ def _agreed(curve: ConeCurve, sheet: Mask) -> Mask:
     return np.asarray(votes > voters / 2)
 
 
-def _one_sided(points: Points, offset: Points, owner: Indices, count: int, sensor: Numbers) -> Mask:
-    """Tell of which nodes all points look at the sensor."""
-    facing = np.einsum("ij,ij->i", sensor - points, offset) > 0
-    size = np.maximum(np.bincount(owner, minlength=count), 1)
-    return np.asarray(np.bincount(owner, facing, minlength=count) >= FACING * size)
+def _seen_through(points: Points, offset: Points, owner: Indices, count: int, sensor: Numbers) -> Mask:
+    """Tell which nodes stand between the sensor and their points: what it saw through is the air."""
+    behind = np.einsum("ij,ij->i", sensor - points, offset) < 0
+    size = np.bincount(owner, minlength=count)
+    enough = (size >= FEWEST) & (np.bincount(owner, behind, minlength=count) >= BEHIND * size)
+    return np.asarray(enough & (_turns(offset, owner, count) < np.pi))
 
 
 def _middles(

@@ -60,11 +60,17 @@ def _roots(points: Points, part: Indices, root: Numbers | None) -> Indices:
     nearest = -1 if root is None else int(((points - root) ** 2).sum(axis=1).argmin())
     roots = []
     for number in np.argsort(-np.bincount(part[part >= 0]), kind="stable"):
-        rows = np.flatnonzero(part == number)
+        rows: Indices = np.flatnonzero(part == number).astype(np.int32)
         if len(rows):
             given = nearest >= 0 and part[nearest] == number
-            roots.append(nearest if given else int(rows[crowd[rows].argmax()]))
+            roots.append(nearest if given else _most_crowded(points, rows, crowd[rows]))
     return np.array(roots, np.int32)
+
+
+def _most_crowded(points: Points, rows: Indices, crowd: Indices) -> int:
+    """Return the row with the largest crowd; of several the one nearest to the mean of all, whatever their order."""
+    most = rows[crowd == crowd.max()]
+    return int(most[((points[most] - points[rows].mean(axis=0)) ** 2).sum(axis=1).argmin()])
 
 
 def _lengths(places: Points, before: Indices, cost: Numbers, kept: Mask) -> Numbers:

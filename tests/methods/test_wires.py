@@ -1,0 +1,422 @@
+"""The wire regime: each of its steps against a plain reference or a case known in closed form, and generated trees."""
+
+import heapq
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from reference.path_tree import path_tree
+from tiskel import CurveGraph, RadiusSource, RobustParams, ShapeParams, Skeleton, contract, extract_skeleton, make_shape
+from tiskel.arrays import Numbers, Points
+from tiskel.gallery.trees import thickened, tree
+from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.regime import Regime
+from tiskel.geometry.round_cones import ConeGraph
+from tiskel.methods.robust.curve import ConeCurve
+from tiskel.methods.robust.wire.curve import curve_of
+from tiskel.methods.robust.wire.levels import Levels, levels_of, widest_gaps
+from tiskel.methods.robust.wire.limbs import limbs_of
+from tiskel.methods.robust.wire.links import BRIDGE, Links, links_of
+from tiskel.methods.robust.wire.routes import POWER, Routes, routes_of
+from tiskel.methods.robust.wire.spurs import without_spurs
+from tiskel.metrics.tree_truth import tree_agreement
+
+STEP = 0.05  # between points along a wire
+GOLDEN = (5**0.5 - 1) / 2
+
+
+def wire(start: Sequence[float], stop: Sequence[float], step: float = STEP) -> Points:
+    """Return points a step apart on a straight way, both ends included."""
+    count = round(float(np.linalg.norm(np.subtract(stop, start))) / step) + 1
+    return np.linspace(start, stop, count)
+
+
+def jittered(points: Points, share: float = 0.1) -> Points:
+    """Return points moved by a share of a step: exact lines and planes are no body to other stages."""
+    return points + np.random.default_rng(0).normal(0, share * STEP, points.shape)
+
+
+def tube(radius: Numbers | float, length: float, count: int) -> Points:
+    """Return points spread evenly over a tube along z, whose radius may change from point to point."""
+    number = np.arange(count)
+    angle = 2 * np.pi * GOLDEN * number
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), length * (number + 0.5) / count], axis=1)
+
+
+def circle(count: int) -> Points:
+    angle = 2 * np.pi * np.arange(count) / count
+    return jittered(np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1))
+
+
+def skeleton_of(points: Points, **settings: Any) -> Skeleton:
+    return extract_skeleton(contract(points, RobustParams(**settings)))
+
+
+def levels_along(points: Points, root: Numbers) -> tuple[Links, Routes, Levels]:
+    links = links_of(points, 10)
+    routes = routes_of(points, links, root)
+    return links, routes, levels_of(points, links, routes, BRIDGE)
+
+
+# links
+
+
+def test_the_spacing_of_an_even_line_is_its_step() -> None:
+    assert links_of(wire([0, 0, 0], [0, 0, 3]), 10).spacing == pytest.approx(STEP)
+
+
+def test_points_in_pairs_do_not_shrink_the_spacing() -> None:
+    """Half of all nearest neighbours are a hundredth of a step away; the median of those would be that."""
+    line = wire([0, 0, 0], [0, 0, 3])
+    assert links_of(np.concatenate([line, line[::2] + [STEP / 100, 0, 0]]), 10).spacing == pytest.approx(STEP, rel=0.01)
+
+
+def test_links_are_both_ways_and_as_long_as_they_say() -> None:
+    points = np.random.default_rng(3).random((200, 3))
+    links = links_of(points, 10)
+    np.testing.assert_allclose(links.lengths, np.linalg.norm(points[links.first] - points[links.second], axis=1))
+    one = set(zip(links.first.tolist(), links.second.tolist(), strict=True))
+    assert one == {(b, a) for a, b in one}
+    # Every point is linked with its nearest.
+    assert set(enumerate(cKDTree(points).query(points, k=2)[1][:, 1].tolist())) <= one
+
+
+def test_pieces_are_joined_across_a_narrow_gap_by_the_shortest_link() -> None:
+    """The gap is 22 steps wide, more points than a point has links, and a ninth of the larger piece."""
+    one, other = wire([0, 0, 0], [0, 0, 10]), wire([0, 0.02, 11.1], [0, 1.5, 11.5])
+    links = links_of(np.concatenate([one, other]), 10)
+    assert links.kept.all()
+    across = (links.first < len(one)) & (links.second >= len(one))
+    assert list(zip(links.first[across], links.second[across], strict=True)) == [(len(one) - 1, len(one))]
+
+
+def test_a_small_piece_far_away_is_left_out_and_a_large_one_is_not() -> None:
+    """It is twenty steps away, a quarter of what is there; a piece with fewer than so many points is small."""
+    body, piece = wire([0, 0, 0], [0, 0, 3]), wire([1, 0, 0], [1, 0, 1.5])
+    for least, kept in ((len(piece) + 1, False), (len(piece), True)):
+        links = links_of(np.concatenate([body, piece]), least)
+        assert links.kept[: len(body)].all()
+        assert (links.kept[len(body) :] == kept).all()
+        assert not ((links.first < len(body)) & (links.second >= len(body))).any()
+
+
+# routes
+
+
+def plain_routes(points: Points, links: Links, root: int) -> Numbers:
+    """Return the length in spacings of the cheapest way of every point to the root, by Dijkstra's rule."""
+    around: dict[int, list[tuple[int, float]]] = {}
+    for a, b, length in zip(links.first.tolist(), links.second.tolist(), links.lengths.tolist(), strict=True):
+        around.setdefault(a, []).append((b, length / links.spacing))
+    cost, length, todo = {root: 0.0}, {root: 0.0}, [(0.0, root)]
+    done: set[int] = set()
+    while todo:
+        _, at = heapq.heappop(todo)
+        if at in done:
+            continue
+        done.add(at)
+        for other, step in around[at]:
+            if cost[at] + step**POWER < cost.get(other, np.inf):
+                cost[other], length[other] = cost[at] + step**POWER, length[at] + step
+                heapq.heappush(todo, (cost[other], other))
+    return np.array([length.get(row, np.nan) for row in range(len(points))])
+
+
+def test_the_lengths_of_routes_are_those_of_dijkstra() -> None:
+    rng = np.random.default_rng(5)
+    body = rng.random((300, 3))
+    points = np.concatenate([body, 9 + body[:30]])
+    links = links_of(points, 31)
+    routes = routes_of(points, links, points[17])
+    np.testing.assert_array_equal(routes.roots, [17])
+    np.testing.assert_allclose(routes.length[:300], plain_routes(points, links, 17)[:300], rtol=1e-9)
+    assert np.isnan(routes.length[300:]).all()
+    assert (routes.before[300:] == -1).all()
+
+
+def test_a_route_keeps_to_the_points_of_a_hairpin() -> None:
+    """Its arms are six steps apart, so that points across are linked; with length itself for weight they are a way."""
+    arms = [wire([0, y, 0], [1, y, 0]) for y in (0, 6 * STEP)]
+    points = jittered(np.concatenate([*arms, wire([1, STEP, 0], [1, 5 * STEP, 0])]), 0.01)
+    links = links_of(points, 10)
+    start, stop = 10, len(arms[0]) + 10  # half way along, opposite each other
+    assert ((links.first == start) & (links.second == stop)).any()
+    assert routes_of(points, links, points[start]).length[stop] == pytest.approx(26, rel=0.05)
+
+
+def test_the_root_is_in_the_crowd_and_every_part_has_one() -> None:
+    rng = np.random.default_rng(0)
+    crowd = np.array([0, 0, 1.0]) + rng.normal(0, 0.03, (60, 3))
+    points = np.concatenate([wire([0, 0, 0], [0, 0, 3]), crowd, wire([5, 0, 0], [5, 0, 3])])
+    routes = routes_of(points, links_of(points, 10), None)
+    assert len(routes.roots) == 2
+    assert np.linalg.norm(points[routes.roots[0]] - [0, 0, 1]) < 0.1
+    assert points[routes.roots[1], 0] == 5
+    np.testing.assert_array_equal(routes.before[routes.roots], routes.roots)
+
+
+# levels
+
+
+def test_the_widest_gap_of_a_regular_ring_is_its_step() -> None:
+    axis = np.array([[0, 0, 1.0], [0.6, 0, 0.8]])
+    for count in (3, 5, 8):
+        angle = 2 * np.pi * np.arange(count) / count
+        around = Rotation.align_vectors(axis[1:], axis[:1])[0]
+        ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+        offset = np.concatenate([ring, around.apply(ring)[:-1]])  # the second one lacks a point
+        gaps = widest_gaps(offset, axis, np.repeat([0, 1], [count, count - 1]).astype(np.int32))
+        np.testing.assert_allclose(gaps, [2 * np.pi / count, min(2, count - 1) * 2 * np.pi / count], atol=1e-9)
+
+
+def test_a_tube_falls_into_rings() -> None:
+    points = tube(0.2, 2.0, 800)
+    levels = levels_along(points, points[0])[2]
+    inner = np.abs(levels.centres[:, 2] - 1) < 0.6
+    assert levels.rings[inner].all()
+    assert np.linalg.norm(levels.centres[inner, :2], axis=1).max() < 0.1  # half the radius
+    assert len(levels.rings) < 1.5 * levels.tops.max()  # one or two a bin of 1.5 spacings
+
+
+@pytest.mark.parametrize("wires", [1, 3])
+def test_wires_are_no_rings(wires: int) -> None:
+    """Three, two steps apart from each other, would be one with the reach of links about tubes."""
+    corner = 2 * STEP / np.sqrt(3)
+    feet = [[corner * np.cos(a), corner * np.sin(a)] for a in 2 * np.pi * np.arange(wires) / 3]
+    points = jittered(np.concatenate([wire([x, y, 0], [x, y, 2]) for x, y in feet]), 0.02)
+    levels = levels_along(points, points[0])[2]
+    assert not levels.rings.any()
+    for section in range(len(levels.centres)):
+        mine = points[levels.section == section]
+        assert np.ptp(mine[:, :2], axis=0).max() < STEP
+
+
+# limbs
+
+
+def chain(*ways: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the parents of sections on ways from the root on, and the lengths of their ways to it."""
+    parents, tops = np.full(1 + max(map(max, ways)), -1, np.int32), np.zeros(1 + max(map(max, ways)))
+    for way in ways:
+        parents[way[1:]] = way[:-1]
+        for before, section in zip(way[:-1], way[1:], strict=True):
+            tops[section] = tops[before] + 1
+    return parents, tops
+
+
+@pytest.mark.parametrize(("contacts", "edges", "joint"), [(4, 8, None), (0, 12, 3), (1, 12, 3)])
+def test_a_way_beside_an_earlier_limb_is_not_its_own(contacts: int, edges: int, joint: int | None) -> None:
+    """Sections 9 to 12 leave the limb 0 to 8 at 3; they touch the limb in so many places, once by chance."""
+    parents, tops = chain(list(range(9)), [3, 9, 10, 11, 12])
+    centres = np.array([[i, 0.0, 0] for i in range(9)] + [[3 + i, 0.5 * i, 0] for i in range(1, 5)])
+    beside: list[list[int]] = [[] for _ in parents]
+    for section in range(12, 12 - contacts, -1):
+        beside[section] = [section - 5]
+    levels = Levels(
+        np.arange(13, dtype=np.int32), centres, parents, np.zeros(13, bool), tops, beside, np.zeros(13, bool)
+    )
+    limbs = limbs_of(levels, 1.0)
+    assert len(limbs.edges) == edges
+    if joint is None:
+        np.testing.assert_array_equal(limbs.owner[9:], [4, 5, 6, 7])
+    else:
+        assert [9, joint] in limbs.edges.tolist()
+        np.testing.assert_array_equal(limbs.owner, np.arange(13))
+
+
+def test_a_limb_shorter_than_a_spacing_belongs_to_what_it_grows_from() -> None:
+    parents, tops = chain(list(range(9)), [3, 9])
+    for out, edges in ((0.9, 8), (1.1, 9)):
+        centres = np.array([*([i, 0.0, 0] for i in range(9)), [3.0, out, 0]])
+        none = np.zeros(10, bool)
+        levels = Levels(np.arange(10, dtype=np.int32), centres, parents, none, tops, [[] for _ in parents], none)
+        limbs = limbs_of(levels, 1.0)
+        assert len(limbs.edges) == edges
+        assert limbs.owner[9] == (3 if edges == 8 else 9)
+
+
+# curve
+
+
+def curve_along(points: Points) -> CurveGraph:
+    links, _, levels = levels_along(points, points[0])
+    return curve_of(points, links.spacing, levels, limbs_of(levels, links.spacing), RobustParams())[0]
+
+
+def test_the_radius_of_a_tube_is_measured_and_that_of_a_wire_bounded() -> None:
+    thick, thin = curve_along(tube(0.2, 2.0, 800)), curve_along(jittered(wire([0, 0, 0], [0, 0, 3]), 0.05))
+    inner = np.abs(thick.nodes[:, 2] - 1) < 0.6
+    assert (thick.radius_sources[inner] == RadiusSource.MEASURED).all()
+    assert (thick.regimes[inner] == Regime.TUBE).all()
+    np.testing.assert_allclose(thick.radii[inner], 0.2, rtol=0.1)
+    assert (thin.radius_sources == RadiusSource.BOUNDED).all()
+    assert (thin.regimes == Regime.WIRE).all()
+    assert thin.radii.max() < STEP
+
+
+def test_radii_between_measured_ones_are_modelled_along_the_limb() -> None:
+    """Of a tube whose middle fifth shows only a stripe, too narrow to say how thick it is: they change linearly."""
+    points = tube(0.25, 3.0, 1500)
+    hidden = (np.abs(points[:, 2] - 1.5) < 0.3) & (points[:, 0] < 0.24)
+    curve = curve_along(points[~hidden])
+    rows = np.flatnonzero((np.abs(curve.nodes[:, 2] - 1.5) < 0.2) & (curve.nodes[:, 0] > 0.2))
+    rows = rows[np.argsort(curve.nodes[rows, 2])]
+    assert len(rows) >= 5
+    assert (curve.radius_sources[rows] == RadiusSource.MODELLED).all()
+    way = np.append(0, np.cumsum(np.linalg.norm(np.diff(curve.nodes[rows], axis=0), axis=1)))
+    np.testing.assert_allclose(curve.radii[rows], np.poly1d(np.polyfit(way, curve.radii[rows], 1))(way), rtol=1e-9)
+
+
+def test_short_spurs_go_and_long_ones_stay() -> None:
+    """Of a radius of 1 at the joint, two are asked for."""
+    nodes = np.array([*([x, 0, 0] for x in range(-10, 11)), [0, 1.5, 0], [0, -2.5, 0]], float)
+    edges = np.array([*([i, i + 1] for i in range(20)), [10, 21], [10, 22]], np.int32)
+    many = np.ones(len(nodes))
+    curve = ConeCurve(
+        nodes=nodes, edges=edges, radii=many, levels=np.zeros(23, np.int32),
+        node_of_section=np.append(np.arange(23), -1).astype(np.int32), section_sizes=many,
+    )  # fmt: skip
+    left = without_spurs(curve)
+    assert left.ends == 3
+    assert not (left.nodes == [0, 1.5, 0]).all(axis=1).any()
+    assert (left.nodes == [0, -2.5, 0]).all(axis=1).any()
+    assert left.node_of_section[21] == left.node_of_section[10]
+
+
+# wires from cloud to skeleton
+
+
+@pytest.mark.parametrize(("topology", "loops"), [("auto", 1), ("tree", 0), ("loops", 1)])
+def test_a_ring_of_wire_is_a_loop_unless_it_is_said_to_be_none(topology: str, loops: int) -> None:
+    s = skeleton_of(circle(120), topology=topology)
+    assert (s.components, s.loops, s.ends) == (1, loops, 2 - 2 * loops)
+    assert s.length == pytest.approx(2 * np.pi, rel=0.04)
+
+
+def test_a_tree_of_wires_whose_twigs_touch_has_no_loop_unless_it_is_said_to() -> None:
+    """Two of five twigs meet head on; of its own accord a body with more ends than loops is a tree."""
+    stems = [wire([0, 0, 0], [0, 0, 1])]
+    twigs = [[1.0, 0, 2], [0, 1.0, 2], [-1.0, 0, 2]]
+    arch = 0.5 * np.pi * np.linspace(0, 2, 64)
+    touching = np.stack([0 * arch, -0.5 + 0.5 * np.cos(arch), 1 + 0.5 * np.sin(arch)], axis=1)
+    back = wire([0, -1, 1], [0, 0, 0.3])
+    points = jittered(np.concatenate([*stems, *(wire([0, 0, 1], end) for end in twigs), touching, back[:-2]]), 0.05)
+    free, closed = skeleton_of(points), skeleton_of(points, topology="loops")
+    assert (free.components, free.loops) == (1, 0)
+    assert (closed.components, closed.loops) == (1, 1)
+    assert (free.regimes == Regime.WIRE).all()
+
+
+def test_a_stray_point_changes_no_wire() -> None:
+    points = jittered(np.concatenate([wire([0, 0, 0], end) for end in ([0, 0, -2], [1, 0, 2], [-1, 0.3, 2])]))
+    s, strayed = skeleton_of(points), skeleton_of(np.concatenate([points, [[30.0, 0, 0]]]))
+    assert (s.components, s.ends) == (1, 3)
+    assert (strayed.components, strayed.loops, strayed.ends) == (1, 0, 3)
+    assert cKDTree(s.nodes).query(strayed.nodes)[0].max() < 1e-6
+
+
+def test_a_cut_in_a_wire_is_bridged_and_said() -> None:
+    line = wire([0, 0, 0], [0, 0, 4])
+    s = skeleton_of(jittered(line[np.abs(line[:, 2] - 2) > 0.17]))
+    assert (s.components, s.ends) == (1, 2)
+    ((one, other),) = s.nodes[s.edges[s.bridged], 2]
+    assert 1.65 < min(one, other) < 1.9
+    assert 2.1 < max(one, other) < 2.35
+    assert "bridged" in {note.code for note in s.notes}
+
+
+def test_bounds_of_wires_are_not_below_the_truth_and_never_zero() -> None:
+    """Points a step apart on wires of a third of a step in radius, at random angles about it."""
+    rng = np.random.default_rng(2)
+    ends: list[list[float]] = [[0, 0, 2], [1, 0, 3], [-0.5, 1, 3], [-0.5, -1, 3]]
+    lines = [wire([0, 0, 0], ends[0]), *(wire(ends[0], end)[1:] for end in ends[1:])]
+    points = np.concatenate(lines)
+    off = rng.normal(size=points.shape)
+    s = skeleton_of(points + STEP / 3 * off / np.linalg.norm(off, axis=1)[:, None])
+    assert (s.regimes == Regime.WIRE).all()
+    assert (s.radius_sources == RadiusSource.BOUNDED).mean() > 0.9
+    assert s.radius.min() >= STEP / 3
+    assert np.median(s.radius) < 1.5 * STEP
+
+
+def test_limbs_grow_from_a_given_root_in_the_unit_of_the_input() -> None:
+    """The bins of the way to the root start there, so that another root moves the nodes."""
+    tip, shift = np.array([1.0, 0, 3]), np.array([1000.0, 0, -7])
+    points = jittered(np.concatenate([wire(end, [0, 0, 1.5]) for end in ([0, 0, 0], tip.tolist(), [-1, 0.3, 3])]), 0.1)
+    plain, rooted = skeleton_of(points), skeleton_of(points, root=tuple(tip))
+    assert np.linalg.norm(rooted.nodes - tip, axis=1).min() < 2 * STEP
+    assert cKDTree(plain.nodes).query(rooted.nodes)[0].max() > 0.1 * STEP
+    moved = skeleton_of(40 * points + shift, root=tuple(40 * tip + shift))
+    assert len(rooted.nodes) == len(moved.nodes)
+    assert cKDTree((moved.nodes - shift) / 40).query(rooted.nodes)[0].max() < 1e-6
+
+
+# generated trees
+
+HABITS = (("spreading", 0.3, 3), ("spreading", 0.5, 3), ("leader", 0.5, 3), ("neuron", 0.2, 7), ("shrub", 0.2, 7))
+
+
+def generated(habit: str, thickness: float, seed: int, count: int = 1200) -> tuple[Points, ConeGraph]:
+    """Return a noisy cloud and its tree; without noise points are regular, and rounding tells which one is nearer."""
+    shape = thickened(tree(habit, tips=25, seed=seed), count, thickness)
+    return make_shape(shape, ShapeParams(count=count, seed=seed, noise=0.1))[0], shape
+
+
+@pytest.mark.parametrize(("habit", "thickness", "seed"), HABITS)
+def test_generated_trees_are_found_as_well_as_by_the_plain_baseline(habit: str, thickness: float, seed: int) -> None:
+    cloud, shape = generated(habit, thickness, seed)
+    s = skeleton_of(cloud)
+    assert (s.components, s.loops) == (1, 0)
+    assert Regime.WIRE in s.regimes
+    found, plain = (tree_agreement(curve, shape, cloud) for curve in (s, path_tree(cloud)))
+    assert found.f is not None
+    assert plain.f is not None
+    assert found.f >= max(0.95, plain.f - 0.01)
+    assert found.tips.recall is not None
+    assert found.tips.precision is not None
+    assert min(found.tips.recall, found.tips.precision) >= 0.75
+
+
+def samples(s: Skeleton) -> Points:
+    return np.concatenate([s.nodes, curve_samples(s, 1000).points])
+
+
+def test_the_curve_of_wires_does_not_hang_on_rotation_shift_scale_or_rows() -> None:
+    cloud = generated(*HABITS[0])[0]
+    s = skeleton_of(cloud)
+    spacing = float(np.median(cKDTree(cloud).query(cloud, k=2)[0][:, 1]))
+    rng = np.random.default_rng(1)
+    for scale, shift in ((1.0, 0.0), (1e4, 1e6), (1e-4, -0.01)):
+        turn, rows = Rotation.random(random_state=int(rng.integers(99))).as_matrix(), rng.permutation(len(cloud))
+        t = skeleton_of((cloud @ turn.T * scale + shift)[rows])
+        assert (t.components, t.loops, t.ends, t.junctions) == (s.components, s.loops, s.ends, s.junctions)
+        one, other = samples(s), (samples(t) - shift) / scale @ turn
+        apart = max(cKDTree(one).query(other)[0].max(), cKDTree(other).query(one)[0].max())
+        assert apart < 1e-3 * spacing
+
+
+def test_wires_give_the_same_bytes_on_one_thread_and_on_two(tmp_path: Path) -> None:
+    np.save(tmp_path / "tree.npy", generated(*HABITS[0])[0])
+    script = (
+        "import sys, numpy as np, tiskel\n"
+        "s = tiskel.extract_skeleton(tiskel.contract(np.load('tree.npy')))\n"
+        "arrays = s.nodes, s.edges, s.radii, s.regimes, s.radius_sources, s.node_of_point, s.contracted\n"
+        "sys.stdout.buffer.write(b''.join(np.ascontiguousarray(a).tobytes() for a in arrays))\n"
+    )
+    made = [
+        subprocess.run(
+            [sys.executable, "-c", script], cwd=tmp_path, env={**os.environ, "TISKEL_NUM_THREADS": threads},
+            capture_output=True, check=True,
+        ).stdout
+        for threads in ("1", "2")
+    ]  # fmt: skip
+    assert len(made[0]) > 10000
+    assert made[0] == made[1]
