@@ -45,6 +45,9 @@ from tiskel.timing import Stopwatch
 # change with 0.7 and with 1.4 times the value.
 DOUBTFUL = 0.012  # misfit from which on a further front is tried; every one after it needs as much again [0, 1]
 BULKY = 0.04  # misfit and share off the middle from which on the inside of the body is thinned
+NEARLY_CLOSED = (
+    0.85  # share of points between an inside and an outside, from which on a front shows limbs [leaves 0.78]
+)
 FLAT = 0.5  # share of the nodes on sheets, from which on a cloud is one
 CLEARLY = 0.7  # of the misfit so far that another front may leave, to be taken [0, 0; decides on noisy mugs and chairs]
 
@@ -89,8 +92,9 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
     best = fitted_curve(network, solid, trace.sections, params)
     if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params), best):
         return thin
-    if flat_share(best) > FLAT:
-        return best  # what encloses nothing has no inside to judge a curve by
+    if flat_share(best) > FLAT:  # what encloses nothing has no inside to judge a curve by, though perhaps limbs
+        inner = body_curve(network, solid, params) if solid.oriented.consistency > NEARLY_CLOSED else None
+        return inner if inner is not None and inner.curve.ends > best.curve.ends and _alike(inner, best) else best
     if best.misfit + best.off_middle >= BULKY:
         inner = body_curve(network, solid, params)
         best = inner if inner is not None and _alike(inner, best) and _clearly(inner, best) else best

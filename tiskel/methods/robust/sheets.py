@@ -22,6 +22,9 @@ from tiskel.methods.robust.fit import foot_points, nearby_edges
 
 # Found by trial on leaves, plants, fronts of bodies and pipes of which a third was seen.
 TURN = np.radians(105)  # of the turn about a node that its points cover; less is a sheet, a third of a pipe 120 degrees
+WIDER = np.radians(130)  # the same where the points are no circle: leaves bend by so much, chests of people too
+MOSTLY = 0.3  # share of nodes on sheets, from which on half a turn is one, too: the cloud was seen from one side
+CIRCLE = 0.97  # of the variance of the points' depth that a circle explains; of clean pipes 0.98 and more, leaves 0.96
 MIDDLE = 0.9  # of a node's points, the middle by angle, that count: noise beside an arc does not widen it
 FEWEST = 6  # points that tell the turn
 NEAREST = 6  # points whose mean is the place on the sheet
@@ -36,6 +39,8 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
         return found
     points, owner = found.network.points[fit.rows], fit.nodes
     offset, sheet = _sheets(found)
+    if sheet.mean() > MOSTLY:
+        sheet = _sheets(found, np.pi)[1]
     if seen_from is not None:
         sheet |= _seen_through(points, offset, owner, len(curve.nodes), found.network.placed(seen_from))
     if not sheet.any():
@@ -54,11 +59,15 @@ def flat_share(found: Candidate) -> float:
     return float(_sheets(found)[1].mean()) if len(found.curve.edges) else 0.0
 
 
-def _sheets(found: Candidate) -> tuple[Points, Mask]:
-    """Return the offsets (p, 3) of the points across the curve, and which nodes are on sheets."""
+def _sheets(found: Candidate, wider: float = WIDER) -> tuple[Points, Mask]:
+    """Return the offsets (p, 3) of the points across the curve, and which nodes are on sheets.
+
+    wider is the turn below which points that are no circle are a sheet.
+    """
     curve, fit = found.curve, found.fit
     offset = _across(curve, found.network.points[fit.rows] - curve.nodes[fit.nodes], fit.nodes)
-    return offset, _agreed(curve, _turns(offset, fit.nodes, len(curve.nodes)) < TURN)
+    turns, circle = _turns(offset, fit.nodes, len(curve.nodes)), _roundness(offset, fit.nodes, len(curve.nodes))
+    return offset, _agreed(curve, (turns < TURN) | ((turns < wider) & (circle < CIRCLE)))
 
 
 def _across(curve: ConeCurve, offset: Points, owner: Indices) -> Points:
@@ -74,9 +83,8 @@ def _across(curve: ConeCurve, offset: Points, owner: Indices) -> Points:
 
 def _turns(offset: Points, owner: Indices, count: int) -> Numbers:
     """Return (v,) how much of the turn about each node its points cover, the middle of them; pi and more where few."""
-    total = np.stack([np.bincount(owner, column, minlength=count) for column in offset.T], axis=1)[owner]
-    mean = total / np.maximum(np.linalg.norm(total, axis=1), TINY)[:, None]
-    cosine = np.einsum("ij,ij->i", offset, mean) / np.maximum(np.linalg.norm(offset, axis=1), TINY)
+    cosine = np.einsum("ij,ij->i", offset, _looks(offset, owner, count)[owner])
+    cosine /= np.maximum(np.linalg.norm(offset, axis=1), TINY)
     angle = np.arccos(np.clip(cosine, -1, 1))  # to the middle of the arc, on either side
     order = np.lexsort((angle, owner))
     size = np.bincount(owner, minlength=count)
@@ -86,6 +94,24 @@ def _turns(offset: Points, owner: Indices, count: int) -> Numbers:
     known = size >= FEWEST
     turn[known] = 2 * angle[order][place[known]]
     return turn
+
+
+def _looks(offset: Points, owner: Indices, count: int) -> Points:
+    """Return (v, 3) the direction of the middle of the points of each node."""
+    total = np.stack([np.bincount(owner, column, minlength=count) for column in offset.T], axis=1)
+    return np.asarray(total / np.maximum(np.linalg.norm(total, axis=1), TINY)[:, None])
+
+
+def _roundness(offset: Points, owner: Indices, count: int) -> Numbers:
+    """Return (v,) the share of the variance of the depth of each node's points that a circle about it explains."""
+    size = np.maximum(np.bincount(owner, minlength=count), 1)
+    depth, away = np.einsum("ij,ij->i", offset, _looks(offset, owner, count)[owner]), np.linalg.norm(offset, axis=1)
+
+    def variance(values: Numbers) -> Numbers:
+        mean = np.bincount(owner, values, minlength=count) / size
+        return np.asarray(np.bincount(owner, (values - mean[owner]) ** 2, minlength=count) / size)
+
+    return np.asarray(1 - variance(away) / np.maximum(variance(depth), TINY))
 
 
 def _agreed(curve: ConeCurve, sheet: Mask) -> Mask:
