@@ -5,8 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tiskel import contract, extract_skeleton, load_cloud
+from tiskel import RobustParams, contract, extract_skeleton, load_cloud
 from tiskel.arrays import Points
+from tiskel.methods.robust.wire.links import links_of
+
+pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 
 STEP = 0.1  # between the points of a twig
 SEEDS = (171, 0, 1, 2)  # of these the first divided by a radius of zero
@@ -42,3 +45,46 @@ def test_nodes_of_radius_zero_are_no_crash(seed: int) -> None:
 def test_reported_twigs_are_no_crash(cases_folder: Path, name: str) -> None:
     skeleton = extract_skeleton(contract(load_cloud(cases_folder / f"{name}.xyz").points))
     assert skeleton.components == 1
+
+
+def test_points_a_rounding_error_apart_end() -> None:
+    """Ways between them grow by nothing, so that sections lead to each other in turn."""
+    points = forking_twigs(3)
+    again = points + 1e-15 * np.random.default_rng(0).normal(size=points.shape)
+    skeleton = extract_skeleton(contract(np.concatenate([points, again]), RobustParams(regime="wire")))
+    assert skeleton.components == 1
+    assert np.isfinite(skeleton.nodes).all()
+
+
+def test_dots_far_apart_do_not_set_a_spacing_of_nothing() -> None:
+    """Rings of radius 1.3e-9: in their spacings the way from one to the next is more than an int32 can count."""
+    angle, height = 2 * np.pi * np.arange(15) / 15, np.linspace(0, 2.5, 7)
+    rings = [np.stack([1.3e-9 * np.cos(angle), 1.3e-9 * np.sin(angle), np.full(15, z)], axis=1) for z in height]
+    assert links_of(np.concatenate(rings), 10).spacing == pytest.approx(2.5e-6)
+    skeleton = extract_skeleton(contract(np.concatenate(rings), RobustParams(regime="wire")))
+    assert np.isfinite(skeleton.nodes).all()
+
+
+def test_a_cloud_without_neighbours_along_a_surface_has_a_curve() -> None:
+    """Upright columns of close points: all their links run along normals, and none is left."""
+    lattice = np.stack(np.meshgrid(*map(np.arange, (3, 3, 7)), indexing="ij"), axis=-1).reshape(-1, 3)
+    skeleton = extract_skeleton(contract(lattice * [1, 1, 1e-3]))
+    assert len(skeleton.edges) > 0
+    assert np.isfinite(skeleton.radius).all()
+
+
+def test_points_of_a_part_without_edges_keep_its_node() -> None:
+    """A ball beside a long twig: its points stand on no edge, and on none of the twig's either."""
+    twig = np.column_stack([np.arange(300.0), np.zeros(300), 0.1 * np.sin(np.arange(300))])
+    ball = np.random.default_rng(0).normal(size=(40, 3)) * 0.2 + [0, 0, 200]
+    skeleton = extract_skeleton(contract(np.concatenate([twig, ball]), RobustParams(regime="wire")))
+    away = np.linalg.norm(skeleton.nodes[skeleton.node_of_point] - skeleton.cloud, axis=1)
+    assert away.max() < 5
+
+
+def test_junctions_of_radius_zero_stay() -> None:
+    """A prism over a triangle, whose edges are strands, and a point beyond."""
+    angle = 2 * np.pi * np.arange(3) / 3
+    rings = [np.stack([np.cos(angle), np.sin(angle), np.full(3, 0.1 * level)], axis=1) for level in range(19)]
+    skeleton = extract_skeleton(contract(np.concatenate([*rings, [[0, 0, 2.8]]]), RobustParams(regime="tube")))
+    assert np.isfinite(skeleton.nodes).all()

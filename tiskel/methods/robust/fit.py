@@ -134,8 +134,8 @@ def foot_points(
 ) -> ConeFit:  # fmt: skip
     """Return the foot points of some points, each on the edge whose surface is nearest.
 
-    Of the edges in its list of candidates (l, w); nearest in size, or, signed,
-    where it lies deepest inside. Radial, the foot is that of the perpendicular
+    Of the edges in its list of candidates (l, w), points without any left out;
+    nearest in size, or, signed, where it lies deepest inside. Radial, the foot is that of the perpendicular
     to the edge, and the residual how far the point is out of the radius there.
     """
     from tiskel.kernels.cones import cone_feet
@@ -144,7 +144,8 @@ def foot_points(
     edge, share, residual = np.empty(count, np.int32), np.empty(count), np.empty(count)
     tables = [np.ascontiguousarray(table, np.int32) for table in (rows, lists, candidates)]
     cone_feet(points, *tables, curve.nodes, curve.radii, curve.edges, signed, radial, edge, share, residual)
-    return ConeFit(curve, tables[0], edge, share, residual)
+    on = edge >= 0
+    return ConeFit(curve, tables[0][on], edge[on], share[on], residual[on])
 
 
 def _step(fit: ConeFit, points: Points, start: Points, straightness: float, fixed: Mask | None) -> Table:

@@ -51,7 +51,7 @@ def contract_by_fronts(network: Network, cloud: Points, params: RobustParams) ->
             sections = cut(network, distance)
             contracted = _evened(on_axes(network, sections), network)
         widths = bin_widths(network, contracted, params.resolution)
-        ratio = float(smallest_distances(contracted, rings).sum() / first.sum())
+        ratio = float(smallest_distances(contracted, rings).sum() / max(first.sum(), TINY))
         steps.append(StepRecord(0.0, ratio, None, None, len(cloud), step_watch.seconds))
         history.append((everyone, np.ascontiguousarray(contracted @ network.axes)))
     never = np.full(len(cloud), -1, np.int32)

@@ -102,6 +102,6 @@ def _places(curve: ConeCurve, joint: int, paths: list[Indices], lines: list[Line
         matrix, right = matrix + across, right + across @ (start - here)
     move = np.linalg.solve(matrix, right)
     limit = FARTHEST * float(curve.radii[joint])
-    move *= limit / max(float(np.linalg.norm(move)), limit)
+    move *= limit / max(float(np.linalg.norm(move)), limit, TINY)
     middle = np.mean([curve.nodes[path[1]] for path in paths], axis=0)
     return np.concatenate([here + np.linspace(1, 0, TRIES)[:, None] * move, [(here + middle) / 2, middle]])

@@ -33,7 +33,9 @@ BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
 
 
 def surely_wires(network: Network) -> bool:
-    """Tell whether so many neighbourhoods are lines that no tube needs to be looked for."""
+    """Tell whether so many neighbourhoods are lines, or so few points linked, that no tube needs to be looked for."""
+    if not len(network.edges):
+        return True
     rows = network.neighbours[:, :LINE_NEIGHBOURS]
     offset = network.points[rows] - network.points[rows].mean(axis=1, keepdims=True)
     root = np.sqrt(np.maximum(np.linalg.eigvalsh(np.einsum("nki,nkj->nij", offset, offset)), 0))
@@ -50,8 +52,6 @@ def wires(network: Network, solid: Solid, params: RobustParams) -> Candidate:
     curve, sections = wire_curve(network, params)
     node = curve.node_of_section[sections.section]
     owned = np.flatnonzero(node >= 0).astype(np.int32)
-    if not len(curve.edges):
-        owned = owned[:0]
     fit = foot_points(curve, network.points, owned, node[owned], nearby_edges(curve))
     return Candidate(fit, sections, network, solid, int(curve.bridged.sum()))
 
@@ -66,8 +66,8 @@ def shorter(thin: Candidate, thick: Candidate) -> bool:
 
 
 def _thickness(found: Candidate) -> float:
-    """Return the median radius about the points, in spacings."""
-    return float(np.median(found.fit.radii)) / found.network.spacing
+    """Return the median radius about the points, in spacings; of a curve without edges there is none."""
+    return float(np.median(found.fit.radii)) / found.network.spacing if len(found.fit.radii) else np.inf
 
 
 def _unexplained(found: Candidate) -> float:

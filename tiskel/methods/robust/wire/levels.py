@@ -59,7 +59,7 @@ class Levels:
 def levels_of(points: Points, links: Links, routes: Routes, bridge: float) -> Levels:
     """Return the sections of points (n, 3); bridge is the length of a link, in spacings, that leads over a gap."""
     count, known = len(points), np.isfinite(routes.length)
-    bins = np.where(known, np.floor(np.nan_to_num(routes.length) / BIN), -1).astype(np.int32)
+    bins = np.where(known, np.floor(np.nan_to_num(routes.length) / BIN), -1).astype(np.int64)
     one, other = links.first, links.second
     lengths = links.lengths / links.spacing
     alike = bins[one] == bins[other]

@@ -12,12 +12,13 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Indices, Mask, Numbers, Pairs, Points
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Pairs, Points, diagonal
 from tiskel.geometry.neighbours import nearest_neighbours
 
 # Found by trial on generated trees (tiskel.gallery.trees), N r / L of their twigs from 0.1 to 5.
 NEIGHBOURS = 20  # points, itself included, that a point is linked with: they reach across a ring of so many
 QUANTILE = 0.75  # of the edges of the minimum spanning tree: the spacing; 1.4 times the median of even clouds
+CLOSEST = 1e-6  # of the diagonal: the least spacing; what is closer is one place, to the precision of many files
 BRIDGE = 4.0  # spacings: longer links lead over a gap
 WIDEST = 0.12  # widest gap that is crossed, in the extent of the larger piece; patches cut from trees are narrower
 SEARCH = 64  # neighbours of points in small pieces that are searched first for another piece
@@ -59,7 +60,7 @@ def links_of(points: Points, least: int) -> Links:
     second, lengths = neighbours[:, 1:].ravel(), np.sqrt(squares[:, 1:].ravel())
     graph = _symmetric(first, second, lengths, count)
     tree = minimum_spanning_tree(graph)
-    spacing = float(np.quantile(tree.data, QUANTILE))
+    spacing = max(float(np.quantile(tree.data, QUANTILE)), CLOSEST * diagonal(points))
     joins, kept = _joins(points, graph, spacing, least)
     ends = np.concatenate([joins, joins[:, ::-1]])
     graph = graph.tocoo()

@@ -16,6 +16,7 @@ from tiskel.methods.robust.wire.links import Links
 
 # Found by trial on generated trees; 1.5 to 3 all work, 1 cuts corners.
 POWER = 2.0  # exponent of the length of a link in its weight
+STEP = 1e-6  # spacings: a step counts as no less, so that ways grow with every one, by more than sums are rounded
 CROWD = 0.03  # share of the diagonal about a point: the root has most points so near, which finds trunks and somas
 
 
@@ -30,7 +31,7 @@ class Routes:
     before : (n,) int32
         The next point on the way; roots name themselves, points that are left out -1.
     length : (n,) float64
-        The length of the way, in spacings; NaN for points that are left out.
+        The length of the way, in spacings, more than that of the next point; NaN for points that are left out.
     """
 
     roots: Indices
@@ -76,8 +77,8 @@ def _most_crowded(points: Points, rows: Indices, crowd: Indices) -> int:
 def _lengths(places: Points, before: Indices, cost: Numbers, kept: Mask) -> Numbers:
     """Return the length of every way, by doubling: after r rounds 2^r steps have been added up."""
     on = np.where(before >= 0, before, 0)
-    length = np.linalg.norm(places - places[on], axis=1)
-    length[before < 0] = 0
+    length = np.maximum(np.linalg.norm(places - places[on], axis=1), STEP)
+    length[(before < 0) | (before == np.arange(len(before)))] = 0
     while True:
         further = length[on]
         if not (further > 0).any():
