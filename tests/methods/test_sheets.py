@@ -69,8 +69,8 @@ def test_what_a_sensor_saw_through_is_no_body() -> None:
 
 def test_the_sensor_stands_in_the_unit_of_the_input() -> None:
     """A shift by a hundred lengths would put a sensor that is not moved along on the other side."""
-    points, shift = arc(150, 0.3, 3.0, 500), np.array([0.0, -300.0, 0])
-    s = skeleton_of(7 * points + shift, seen_from=(0.0, -8.0 * 7 - 300, 10.0))
+    points, shift = arc(150, 0.3, 3.0, 500), np.array([0.0, 300.0, 0])
+    s = skeleton_of(7 * points + shift, seen_from=(0.0, -8.0 * 7 + 300, 10.0))
     assert (s.regimes == Regime.SHEET).all()
 
 
