@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
-from tiskel.arrays import Edges, Points
+from tiskel.arrays import Edges, Mask, Points
 from tiskel.geometry.graph import component_labels
 from tiskel.methods.robust.curve import ConeCurve, with_nodes
 from tiskel.methods.robust.wire.links import Links
@@ -21,6 +21,7 @@ from tiskel.params import Topology
 REACH = 3.0  # spacings between the points of an end and of what it meets, at most
 DETOUR = 10.0  # spacings along the curve between the two, at least
 RADII = 4.0  # the same in the sum of the radii at both
+HEAD_ON = 0.25  # share of ends that meet another end, from which on a part is no tree [trees to 0.15, lattices 0.4]
 FACING = 0.0  # cosine of the end's direction to what it meets, at least
 
 
@@ -29,18 +30,25 @@ def with_loops(
 ) -> ConeCurve:  # fmt: skip
     """Return the curve with the edges that close its loops; topology says whether there are any.
 
-    Of its own accord only in parts that have no more ends left than loops.
+    Of its own accord only in parts that are no trees.
     """
     if topology == "tree":
         return curve
     pairs = _meetings(curve, sections, links)
     if topology == "auto" and len(pairs):
-        part = component_labels(len(curve.nodes), curve.edges)
-        closed = with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32))
-        ends = np.bincount(part[closed.degrees == 1], minlength=int(part.max()) + 1)
-        loops = np.bincount(part[pairs[:, 0]], minlength=int(part.max()) + 1)
-        pairs = pairs[(ends <= loops)[part[pairs[:, 0]]]]
+        pairs = pairs[_looped(curve, pairs)]
     return with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32)) if len(pairs) else curve
+
+
+def _looped(curve: ConeCurve, pairs: Edges) -> Mask:
+    """Tell which pairs (p, 2) are in parts that have no more ends left than loops, or where many ends meet head on."""
+    part = component_labels(len(curve.nodes), curve.edges)
+    closed = with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32))
+    count, end = int(part.max()) + 1, curve.degrees == 1
+    ends, left = (np.bincount(part[graph.degrees == 1], minlength=count) for graph in (curve, closed))
+    loops = np.bincount(part[pairs[:, 0]], minlength=count)
+    head_on = 2 * np.bincount(part[pairs[:, 0]][end[pairs].all(axis=1)], minlength=count)
+    return np.asarray(((left <= loops) | (head_on >= HEAD_ON * ends))[part[pairs[:, 0]]])
 
 
 def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
