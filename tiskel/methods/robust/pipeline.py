@@ -16,6 +16,7 @@ from tiskel.methods.robust.ends import with_stubs
 from tiskel.methods.robust.fit import ConeFit, fit_cones
 from tiskel.methods.robust.junctions import merged_junctions, placed_junctions
 from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.pieces import joined_pieces
 from tiskel.methods.robust.sections import section_graph
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
@@ -57,4 +58,7 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
     curve = with_stubs(found.curve, network, sections)
     widest = params.bridge_gaps if network.surface is None else 0  # a mesh knows what is connected
     curve, gaps = bridged(curve, network, sections, widest)
+    if network.surface is None and widest > 0:
+        pieces, curve = curve.components, joined_pieces(curve)
+        gaps += pieces - curve.components
     return Candidate(fit(curve, 0), sections, network, solid, gaps)

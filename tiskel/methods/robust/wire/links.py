@@ -20,7 +20,7 @@ NEIGHBOURS = 20  # points, itself included, that a point is linked with: they re
 QUANTILE = 0.75  # of the edges of the minimum spanning tree: the spacing; 1.4 times the median of even clouds
 CLOSEST = 1e-6  # of the diagonal: the least spacing; what is closer is one place, to the precision of many files
 BRIDGE = 4.0  # spacings: longer links lead over a gap
-WIDEST = 0.12  # widest gap that is crossed, in the extent of the larger piece; patches cut from trees are narrower
+WIDEST = 0.2  # widest gap that is crossed, in the extent of the larger piece; patches cut from trees are narrower
 SEARCH = 64  # neighbours of points in small pieces that are searched first for another piece
 
 
