@@ -58,6 +58,19 @@ def test_a_pipe_of_which_much_is_seen_keeps_its_axis(degrees: float) -> None:
     np.testing.assert_allclose(s.radius, 0.3, rtol=0.1)
 
 
+def test_of_the_same_turn_a_fold_is_a_sheet_and_an_arc_a_pipe() -> None:
+    """Both cover 110 degrees about where their normals meet; a circle is what a pipe looks like."""
+    number = np.arange(600)
+    across = 0.8 * (GOLDEN * number % 1 - 0.5)
+    fold = np.stack([across, -np.abs(across) * np.tan(np.radians(30)), 3 * (number + 0.5) / 600], axis=1)
+    fold += np.random.default_rng(1).normal(0, 0.002, fold.shape)
+    folded, round_one = skeleton_of(fold), skeleton_of(arc(115, 0.3, 3.0, 500))
+    assert (folded.regimes == Regime.SHEET).mean() > 0.9
+    assert np.median(cKDTree(fold).query(folded.nodes)[0]) < spacing(fold)
+    assert not (round_one.regimes == Regime.SHEET).any()
+    assert np.linalg.norm(round_one.nodes[:, :2], axis=1).max() < 0.1 * 0.3
+
+
 def test_what_a_sensor_saw_through_is_no_body() -> None:
     """Half a pipe seen from outside may be a pipe; seen from the hollow side it is a gutter."""
     points = arc(150, 0.3, 3.0, 500)

@@ -301,6 +301,14 @@ def test_a_ring_of_wire_is_a_loop_unless_it_is_said_to_be_none(topology: str, lo
     assert s.length == pytest.approx(2 * np.pi, rel=0.04)
 
 
+def test_a_lattice_of_wires_that_is_said_to_close_has_its_loops_and_its_ends() -> None:
+    """Three wires across three others: four loops, and more ends than these."""
+    lines = [wire([x, -0.6, 0], [x, 2.6, 0]) for x in range(3)]
+    lines += [wire([-0.6, y, 0], [2.6, y, 0]) for y in range(3)]
+    s = skeleton_of(jittered(np.concatenate(lines)), topology="loops")
+    assert (s.components, s.loops, s.ends) == (1, 4, 12)
+
+
 def test_a_tree_of_wires_whose_twigs_touch_has_no_loop_unless_it_is_said_to() -> None:
     """Two of five twigs meet head on; of its own accord a body with more ends than loops is a tree."""
     stems = [wire([0, 0, 0], [0, 0, 1])]

@@ -22,6 +22,7 @@ REACH = 3.0  # spacings between the points of an end and of what it meets, at mo
 DETOUR = 10.0  # spacings along the curve between the two, at least
 RADII = 4.0  # the same in the sum of the radii at both
 HEAD_ON = 0.25  # share of ends that meet another end, from which on a part is no tree [trees to 0.15, lattices 0.4]
+MEETINGS = 2  # of ends with ends in a part, at least: one is chance, and a quarter of the ends of a small tree
 FACING = 0.0  # cosine of the end's direction to what it meets, at least
 
 
@@ -47,8 +48,9 @@ def _looped(curve: ConeCurve, pairs: Edges) -> Mask:
     count, end = int(part.max()) + 1, curve.degrees == 1
     ends, left = (np.bincount(part[graph.degrees == 1], minlength=count) for graph in (curve, closed))
     loops = np.bincount(part[pairs[:, 0]], minlength=count)
-    head_on = 2 * np.bincount(part[pairs[:, 0]][end[pairs].all(axis=1)], minlength=count)
-    return np.asarray(((left <= loops) | (head_on >= HEAD_ON * ends))[part[pairs[:, 0]]])
+    met = np.bincount(part[pairs[:, 0]][end[pairs].all(axis=1)], minlength=count)
+    many = (met >= MEETINGS) & (2 * met >= HEAD_ON * ends)
+    return np.asarray(((left <= loops) | many)[part[pairs[:, 0]]])
 
 
 def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
