@@ -66,8 +66,10 @@ def _in_web(curve: ConeCurve, path: Indices, paths: list[Indices], body: Body) -
     last = int(np.flatnonzero(radii >= FULL * own)[-1])
     joint, tip, length = curve.nodes[path[0]], curve.nodes[path[last]], float(along(curve, path)[last])
     for other in paths:
+        if other[0] != path[0] or other[1] == path[1]:
+            continue
         way = along(curve, other)
-        if other[0] == path[0] and other[1] != path[1] and way[-1] > AS_LONG * length:
+        if way[-1] > AS_LONG * length:
             node = int(other[min(int(np.searchsorted(way, length)), len(other) - 1)])
             if _cosine(tip - joint, curve.nodes[node] - joint) > BESIDE:
                 probes = tip + PROBES[:, None] * (curve.nodes[node] - tip)
