@@ -12,6 +12,7 @@ from tiskel.methods.robust.wire.links import links_of
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 
 STEP = 0.1  # between the points of a twig
+WIRES = RobustParams(regime="wire")
 SEEDS = (171, 0, 1, 2)  # of these the first divided by a radius of zero
 
 
@@ -51,7 +52,7 @@ def test_points_a_rounding_error_apart_end() -> None:
     """Ways between them grow by nothing, so that sections lead to each other in turn."""
     points = forking_twigs(3)
     again = points + 1e-15 * np.random.default_rng(0).normal(size=points.shape)
-    skeleton = extract_skeleton(contract(np.concatenate([points, again]), RobustParams(regime="wire")))
+    skeleton = extract_skeleton(contract(np.concatenate([points, again]), WIRES))
     assert skeleton.components == 1
     assert np.isfinite(skeleton.nodes).all()
 
@@ -61,7 +62,7 @@ def test_dots_far_apart_do_not_set_a_spacing_of_nothing() -> None:
     angle, height = 2 * np.pi * np.arange(15) / 15, np.linspace(0, 2.5, 7)
     rings = [np.stack([1.3e-9 * np.cos(angle), 1.3e-9 * np.sin(angle), np.full(15, z)], axis=1) for z in height]
     assert links_of(np.concatenate(rings), 10).spacing == pytest.approx(2.5e-6)
-    skeleton = extract_skeleton(contract(np.concatenate(rings), RobustParams(regime="wire")))
+    skeleton = extract_skeleton(contract(np.concatenate(rings), WIRES))
     assert np.isfinite(skeleton.nodes).all()
 
 
@@ -77,7 +78,7 @@ def test_points_of_a_part_without_edges_keep_its_node() -> None:
     """A ball beside a long twig: its points stand on no edge, and on none of the twig's either."""
     twig = np.column_stack([np.arange(300.0), np.zeros(300), 0.1 * np.sin(np.arange(300))])
     ball = np.random.default_rng(0).normal(size=(40, 3)) * 0.2 + [0, 0, 200]
-    skeleton = extract_skeleton(contract(np.concatenate([twig, ball]), RobustParams(regime="wire")))
+    skeleton = extract_skeleton(contract(np.concatenate([twig, ball]), WIRES))
     away = np.linalg.norm(skeleton.nodes[skeleton.node_of_point] - skeleton.cloud, axis=1)
     assert away.max() < 5
 
@@ -88,3 +89,15 @@ def test_junctions_of_radius_zero_stay() -> None:
     rings = [np.stack([np.cos(angle), np.sin(angle), np.full(3, 0.1 * level)], axis=1) for level in range(19)]
     skeleton = extract_skeleton(contract(np.concatenate([*rings, [[0, 0, 2.8]]]), RobustParams(regime="tube")))
     assert np.isfinite(skeleton.nodes).all()
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_even_twigs_are_the_same_in_any_order_turned_and_scaled(seed: int) -> None:
+    """Points exactly one step apart: three steps are two bins, and rounding must not say one."""
+    points, rng = forking_twigs(seed), np.random.default_rng(seed)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    nodes = extract_skeleton(contract(points, WIRES)).nodes
+    for moved in (points[rng.permutation(len(points))], points @ turn, 3.7 * points):
+        other = extract_skeleton(contract(moved, WIRES)).nodes
+        away = [np.sort(np.linalg.norm(place - place.mean(axis=0), axis=1)) for place in (nodes, other)]
+        assert away[0] / away[0].max() == pytest.approx(away[1] / away[1].max(), abs=1e-6)

@@ -18,6 +18,7 @@ from tiskel.geometry.neighbours import nearest_neighbours
 # Found by trial on generated trees (tiskel.gallery.trees), N r / L of their twigs from 0.1 to 5.
 NEIGHBOURS = 20  # points, itself included, that a point is linked with: they reach across a ring of so many
 QUANTILE = 0.75  # of the edges of the minimum spanning tree: the spacing; 1.4 times the median of even clouds
+ABOVE = 1 + 1e-7  # factor of the spacing, so that on even wires rounding does not decide what is within two or three
 CLOSEST = 1e-6  # of the diagonal: the least spacing; what is closer is one place, to the precision of many files
 BRIDGE = 4.0  # spacings: longer links lead over a gap
 WIDEST = 0.2  # widest gap that is crossed, in the extent of the larger piece; patches cut from trees are narrower
@@ -60,7 +61,7 @@ def links_of(points: Points, least: int) -> Links:
     second, lengths = neighbours[:, 1:].ravel(), np.sqrt(squares[:, 1:].ravel())
     graph = _symmetric(first, second, lengths, count)
     tree = minimum_spanning_tree(graph)
-    spacing = max(float(np.quantile(tree.data, QUANTILE)), CLOSEST * diagonal(points))
+    spacing = max(float(np.quantile(tree.data, QUANTILE)) * ABOVE, CLOSEST * diagonal(points))
     joins, kept = _joins(points, graph, spacing, least)
     ends = np.concatenate([joins, joins[:, ::-1]])
     graph = graph.tocoo()
