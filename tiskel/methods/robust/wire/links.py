@@ -92,7 +92,7 @@ def _joins(points: Points, graph: sparse.csr_array, spacing: float, least: int) 
     of the two. A small piece further away is no part of the body.
     """
     piece = connected_components(graph, directed=False)[1].astype(np.int32)
-    joins: list[tuple[int, int]] = []
+    joins: set[tuple[int, int]] = set()  # both pieces may find the same
     while piece.max() > 0:
         sizes = np.bincount(piece)
         found = [
@@ -102,13 +102,13 @@ def _joins(points: Points, graph: sparse.csr_array, spacing: float, least: int) 
         ]
         if not found:
             break
-        joins += [(one, other) for _, one, other in found]
+        joins |= {(min(one, other), max(one, other)) for _, one, other in found}
         ends = np.array([(piece[one], piece[other]) for _, one, other in found])
         merged = sparse.coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(sizes), len(sizes)))
         piece = connected_components(merged, directed=False)[1].astype(np.int32)[piece]
     sizes = np.bincount(piece)
     kept = (sizes >= min(least, sizes.max()))[piece]
-    return np.array(joins, np.int32).reshape(-1, 2), np.asarray(kept)
+    return np.array(sorted(joins), np.int32).reshape(-1, 2), np.asarray(kept)
 
 
 def _shortest(points: Points, piece: Indices, largest: int) -> list[tuple[float, int, int]]:
