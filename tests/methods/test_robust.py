@@ -157,9 +157,16 @@ def test_several_objects_give_several_skeletons_and_strays_none() -> None:
     strays = np.random.default_rng(0).uniform(-9, 9, (15, 3))
     s = skeleton_of(np.concatenate([one, other + [2.5, 0, 0], strays[np.linalg.norm(strays, axis=1) > 5]]))
     assert (s.components, s.loops, s.ends) == (2, 1, 3)
-    assert [note.code for note in s.notes] == ["small-parts"]
-    assert "points in small separate parts were left out" in str(s.notes[0])
     assert s.node_of_point.min() >= 0
+
+
+def test_small_parts_get_no_curve_and_are_told() -> None:
+    one = make_shape(shape_graph("torus"), ShapeParams(count=3000))[0]
+    crumb = make_shape(shape_graph("capsule"), ShapeParams(count=14))[0]  # too many points for strays
+    s = skeleton_of(np.concatenate([one, 0.2 * crumb + [4, 0, 0]]))
+    assert (s.components, s.loops, s.ends) == (1, 1, 0)
+    assert [note.code for note in s.notes] == ["small-parts"]
+    assert "14 points in small separate parts were left out" in str(s.notes[0])
 
 
 def test_duplicates_and_broken_rows_change_nothing() -> None:
@@ -236,7 +243,7 @@ def test_settings_do_what_they_say() -> None:
     assert extract_skeleton(cut, SkeletonParams(bridge_gaps=0)).components == 2
     y = contract(make_shape(shape_graph("y"))[0])
     assert extract_skeleton(y, SkeletonParams(least_branch=50)).ends == 2
-    duck = contract(make_shape(shape_graph("duck"))[0])
+    duck = contract(make_shape(shape_graph("duck"), ShapeParams(count=1024))[0])
     assert extract_skeleton(duck, SkeletonParams(grow_ends=0)).length < extract_skeleton(duck).length
     two = contract(make_shape(shape_graph("quadruped"))[0])
     assert extract_skeleton(two, SkeletonParams(merge_junctions=50)).junctions < extract_skeleton(two).junctions

@@ -34,6 +34,7 @@ from tiskel.geometry.solid import solid_of
 from tiskel.methods.robust.body import body_curve
 from tiskel.methods.robust.checks import Candidate, radii_of, radius_sources
 from tiskel.methods.robust.doubts import doubts_of
+from tiskel.methods.robust.ends import open_ends
 from tiskel.methods.robust.fronts import contract_by_fronts, further_front
 from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.network import Network, prepared
@@ -48,7 +49,7 @@ from tiskel.timing import Stopwatch
 # Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
 # change with 0.7 and with 1.4 times the value.
 DOUBTFUL = 0.012  # misfit from which on a further front is tried; every one after it needs as much again [0, 1]
-BULKY = 0.04  # misfit and share off the middle from which on the inside of the body is thinned
+BULKY = 0.15  # misfit and share off the middle from which on the inside of the body is thinned
 NEARLY_CLOSED = (
     0.85  # share of points between an inside and an outside, from which on a front shows limbs [leaves 0.78]
 )
@@ -101,7 +102,8 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
         return inner if inner is not None and inner.curve.ends > best.curve.ends and _alike(inner, best) else best
     if best.misfit + best.off_middle >= BULKY:
         inner = body_curve(network, solid, params)
-        best = inner if inner is not None and _alike(inner, best) and _clearly(inner, best) else best
+        if inner is not None and _alike(inner, best) and _clearly(inner, best) and not _in_mouths(inner, best):
+            best = inner
     for number in range(1, params.extra_fronts + 1):
         if best.misfit < number * DOUBTFUL:
             break
@@ -123,6 +125,12 @@ def _alike(inner: Candidate, best: Candidate) -> bool:
     """
     known = inner.solid.handles is not None and best.gaps == 0
     return inner.curve.components == best.curve.components and (known or inner.curve.loops == best.curve.loops)
+
+
+def _in_mouths(inner: Candidate, best: Candidate) -> bool:
+    """Tell whether a curve from the inside has more ends than a tube open at both: its wide mouths have corners."""
+    mouths = len(open_ends(best.curve, best.network, best.sections))
+    return inner.curve.ends > best.curve.ends >= 2 and mouths == best.curve.ends
 
 
 def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
