@@ -48,6 +48,8 @@ def thinned(inside: Grid, order: Stack, kept: Grid) -> Grid:
     padded = np.pad(inside, 1)
     state = padded.astype(np.int32) + np.pad(kept & inside, 1)
     cells = np.flatnonzero(padded)
+    if len(cells) == 0:
+        return np.zeros(inside.shape, bool)
     cubes = cells[np.argsort(order[inside], kind="stable")].astype(np.int32)
     rank = np.full(state.size, -1, np.int32)
     rank[cubes] = np.arange(len(cubes), dtype=np.int32)
