@@ -61,7 +61,7 @@ def shorter(thin: Candidate, thick: Candidate) -> bool:
     worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
     if _unexplained(thin) >= worse * _unexplained(thick):
         return False
-    contacts = thick.curve.loops > (thick.solid.handles or 0) and thin.curve.ends >= THICKET
+    contacts = thick.curve.loops > (thick.solid.handles or 0) and thin.curve.ends >= THICKET and not thin.curve.loops
     return _thickness(thin) < (SLENDER if contacts else THIN) and (contacts or not thick.solid.trusted)
 
 
