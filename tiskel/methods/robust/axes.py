@@ -28,11 +28,11 @@ def line_centres(points: Points, normals: Points, label: Indices, count: int) ->
     squares, pulled a little to the mean.
     """
     size = np.bincount(label, minlength=count).astype(float)
-    mean = _sums(points, label, count) / np.maximum(size, 1)[:, None]
+    mean = sums(points, label, count) / np.maximum(size, 1)[:, None]
     offset = points - mean[label]
     across = np.eye(3) * (1 + PULL) - normals[:, :, None] * normals[:, None, :]
-    matrix = _sums(across.reshape(-1, 9), label, count).reshape(-1, 3, 3)
-    right = _sums(np.einsum("nij,nj->ni", across, offset), label, count) - PULL * _sums(offset, label, count)
+    matrix = sums(across.reshape(-1, 9), label, count).reshape(-1, 3, 3)
+    right = sums(np.einsum("nij,nj->ni", across, offset), label, count) - PULL * sums(offset, label, count)
     matrix[size == 0] = np.eye(3)
     return mean + np.linalg.solve(matrix, right[..., None])[..., 0], size
 
@@ -43,7 +43,7 @@ def on_axes(network: Network, sections: Sections) -> Points:
     label, count = sections.section[rows], sections.count
     points, normals = network.points[rows], network.normals[rows]
     centre, size = line_centres(points, normals, label, count)
-    scatter = _sums((normals[:, :, None] * normals[:, None, :]).reshape(-1, 9), label, count).reshape(-1, 3, 3)
+    scatter = sums((normals[:, :, None] * normals[:, None, :]).reshape(-1, 9), label, count).reshape(-1, 3, 3)
     values, vectors = np.linalg.eigh(scatter)
     # A tube has no normals along its axis, a ball as many as in any direction.
     tubular = np.clip(1 - 2 * values[:, 0] / np.maximum(values[:, 1], TINY), 0, 1)
@@ -64,6 +64,6 @@ def _roundness(distance: Numbers, label: Indices, size: Numbers) -> Numbers:
     return np.asarray(np.clip((RAGGED - spread) / (RAGGED - ROUND), 0, 1))
 
 
-def _sums(values: Table, label: Indices, count: int) -> Table:
+def sums(values: Table, label: Indices, count: int) -> Table:
     """Return (count, d) the sums of values (n, d) by label."""
     return np.asarray(np.stack([np.bincount(label, column, minlength=count) for column in values.T], axis=1))

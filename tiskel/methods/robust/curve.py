@@ -45,6 +45,16 @@ class ConeCurve(CurveGraph):
         share = 1 / np.maximum(self.degrees, 1)[first]
         return sparse.coo_array((share, (first, second)), shape=(len(self.nodes), len(self.nodes))).tocsr()
 
+    @cached_property
+    def directions(self) -> Points:
+        """(v, 3) the direction of the curve at every node, either way: that of the edges there, the longest first."""
+        first, second = self.edges.T
+        along = self.nodes[second] - self.nodes[first]
+        scatter = np.zeros((len(self.nodes), 3, 3))
+        for ends in (first, second):
+            np.add.at(scatter, ends, along[:, :, None] * along[:, None, :])
+        return np.asarray(np.linalg.eigh(scatter)[1][:, :, 2])
+
     def paths_from(self, *, ends: bool) -> list[Indices]:
         """Return every branch that starts at an end (or at a junction), from there; both ways where both are."""
         degree = self.degrees

@@ -72,12 +72,7 @@ def _sheets(found: Candidate, wider: float = WIDER) -> tuple[Points, Mask]:
 
 def _across(curve: ConeCurve, offset: Points, owner: Indices) -> Points:
     """Return offsets (n, 3) from nodes without their share along the curve."""
-    first, second = curve.edges.T
-    along = curve.nodes[second] - curve.nodes[first]
-    scatter = np.zeros((len(curve.nodes), 3, 3))
-    for ends in (first, second):
-        np.add.at(scatter, ends, along[:, :, None] * along[:, None, :])
-    axis = np.linalg.eigh(scatter)[1][:, :, 2][owner]
+    axis = curve.directions[owner]
     return np.asarray(offset - np.einsum("ij,ij->i", offset, axis)[:, None] * axis)
 
 

@@ -8,9 +8,10 @@ from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
 from tiskel.geometry.graph import tidy_edges
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
+from tiskel.methods.robust.axes import sums
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.fit import fit_cones
-from tiskel.methods.robust.wire.levels import Levels, sums, widest_gaps
+from tiskel.methods.robust.wire.levels import Levels, widest_gaps
 from tiskel.methods.robust.wire.limbs import Limbs
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
@@ -48,7 +49,7 @@ def curve_of(
 
 def _with_radii(curve: ConeCurve, points: Points, label: Indices, spacing: float) -> ConeCurve:
     """Return the curve with radii, what they are worth, and regimes; label (n,) is the node of each point."""
-    count, axis = len(curve.nodes), _directions(curve)
+    count, axis = len(curve.nodes), curve.directions
     offset = points - curve.nodes[label]
     offset = offset - np.einsum("ij,ij->i", offset, axis[label])[:, None] * axis[label]
     away = np.linalg.norm(offset, axis=1)
@@ -61,16 +62,6 @@ def _with_radii(curve: ConeCurve, points: Points, label: Indices, spacing: float
     thick = measured & (radii > THICK * spacing)
     regimes = np.where(thick, Regime.TUBE, Regime.WIRE).astype(np.uint8)
     return replace(curve, radii=np.maximum(radii, TINY), radius_sources=sources, regimes=regimes)
-
-
-def _directions(curve: ConeCurve) -> Points:
-    """Return (v, 3) the direction of the limb at every node: that of the edges there, the longest ways first."""
-    first, second = curve.edges.T
-    along = curve.nodes[second] - curve.nodes[first]
-    scatter = np.zeros((len(curve.nodes), 3, 3))
-    for ends in (first, second):
-        np.add.at(scatter, ends, along[:, :, None] * along[:, None, :])
-    return np.asarray(np.linalg.eigh(scatter)[1][:, :, 2])
 
 
 def _even(curve: ConeCurve, values: Numbers) -> Numbers:

@@ -12,7 +12,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import TINY, Indices, Mask, Numbers, Points, Table
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
+from tiskel.methods.robust.axes import sums
 from tiskel.methods.robust.wire.links import Links
 from tiskel.methods.robust.wire.routes import Routes
 
@@ -100,11 +101,6 @@ def _lists(one: Indices, other: Indices, count: int) -> list[list[int]]:
     graph.sort_indices()
     rows, starts = graph.indices.tolist(), graph.indptr.tolist()
     return [rows[start:stop] for start, stop in zip(starts, starts[1:], strict=False)]
-
-
-def sums(values: Table, label: Indices, count: int) -> Table:
-    """Return (count, d) the sums of values (n, d) by label."""
-    return np.asarray(np.stack([np.bincount(label, column, minlength=count) for column in values.T], axis=1))
 
 
 def _rings(points: Points, length: Numbers, label: Indices, count: int) -> Mask:
