@@ -114,7 +114,7 @@ CURVING: dict[str, Option] = {
     ),
     "topology": (
         _setting(
-            Topology, None, "Whether limbs of wires close loops: never, where ends meet, or only where the body is no "
+            Topology, None, "Whether limbs close loops: never, wherever they meet, or only where the body is no "
             "tree", "robust", ROBUST.topology,
         ), None,
     ),

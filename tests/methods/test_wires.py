@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
@@ -22,8 +23,8 @@ from tiskel.geometry.regime import Regime
 from tiskel.geometry.round_cones import ConeGraph
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.wire.curve import curve_of
-from tiskel.methods.robust.wire.levels import Levels, levels_of, widest_gaps
-from tiskel.methods.robust.wire.limbs import limbs_of
+from tiskel.methods.robust.wire.levels import BIN, RESOLVED, Levels, levels_of, widest_gaps
+from tiskel.methods.robust.wire.limbs import crowding, limbs_of
 from tiskel.methods.robust.wire.links import BRIDGE, Links, links_of
 from tiskel.methods.robust.wire.routes import POWER, Routes, routes_of
 from tiskel.methods.robust.wire.spurs import without_spurs
@@ -63,7 +64,7 @@ def skeleton_of(points: Points, **settings: Any) -> Skeleton:
 def levels_along(points: Points, root: Numbers) -> tuple[Links, Routes, Levels]:
     links = links_of(points, 10)
     routes = routes_of(points, links, root)
-    return links, routes, levels_of(points, links, routes, BRIDGE)
+    return links, routes, levels_of(points, links, routes, BRIDGE, RESOLVED)
 
 
 # links
@@ -179,11 +180,11 @@ def test_the_widest_gap_of_a_regular_ring_is_its_step() -> None:
 
 def test_a_tube_falls_into_rings() -> None:
     points = tube(0.2, 2.0, 800)
-    levels = levels_along(points, points[0])[2]
+    links, _, levels = levels_along(points, points[0])
     inner = np.abs(levels.centres[:, 2] - 1) < 0.6
     assert levels.rings[inner].all()
     assert np.linalg.norm(levels.centres[inner, :2], axis=1).max() < 0.1  # half the radius
-    assert len(levels.rings) < 1.5 * levels.tops.max()  # one or two a bin of 1.5 spacings
+    assert inner.sum() < 2 * 1.2 / (BIN * links.spacing)  # one or two a bin
 
 
 @pytest.mark.parametrize("wires", [1, 3])
@@ -210,6 +211,23 @@ def chain(*ways: list[int]) -> tuple[np.ndarray, np.ndarray]:
         for before, section in zip(way[:-1], way[1:], strict=True):
             tops[section] = tops[before] + 1
     return parents, tops
+
+
+def test_two_cut_off_twigs_that_are_nearest_to_each_other_are_joined_to_the_body() -> None:
+    """The gap between them is wide for both; that to the body is wider, and narrow for it."""
+    body, one, other = wire([0, 0, 0], [0, 0, 10]), wire([0, 1.2, 9], [0, 1.6, 9]), wire([0, 1.6, 8.0], [0, 1.2, 8.0])
+    links = links_of(np.concatenate([body, one, other]), 5)
+    assert links.kept.all()
+    assert connected_components(links.graph, directed=False)[0] == 1
+
+
+def test_crowding_is_the_points_to_a_spacing_of_length() -> None:
+    """1 on a thread, on a tube all its points over its length; its limb is longer by a turn at either end."""
+    thread, resolved = jittered(wire([0, 0, 0], [0, 0, 3]), 0.05), tube(0.2, 2.0, 800)
+    for points, expected in ((thread, 1.0), (resolved, None)):
+        links, _, levels = levels_along(points, points[0])
+        found = crowding(levels, limbs_of(levels, links.spacing), links.spacing)
+        assert found == pytest.approx(expected or 800 / 2 * links.spacing, rel=0.2)
 
 
 @pytest.mark.parametrize(("contacts", "edges", "joint"), [(4, 8, None), (0, 12, 3), (1, 12, 3)])
@@ -284,11 +302,46 @@ def test_short_spurs_go_and_long_ones_stay() -> None:
         nodes=nodes, edges=edges, radii=many, levels=np.zeros(23, np.int32),
         node_of_section=np.append(np.arange(23), -1).astype(np.int32), section_sizes=many,
     )  # fmt: skip
-    left = without_spurs(curve)
+    left = without_spurs(curve, 1.0, 0.0)
     assert left.ends == 3
     assert not (left.nodes == [0, 1.5, 0]).all(axis=1).any()
     assert (left.nodes == [0, -2.5, 0]).all(axis=1).any()
     assert left.node_of_section[21] == left.node_of_section[10]
+
+
+def lone_spur(length: float, counts: float, radius: float = 0.1) -> ConeCurve:
+    """Return a straight limb of nodes a spacing apart, ten points each, with an end branch of one node."""
+    nodes = np.array([*([x, 0, 0] for x in range(-10, 11)), [0, length, 0]], float)
+    edges = np.array([*([i, i + 1] for i in range(20)), [10, 21]], np.int32)
+    return ConeCurve(
+        nodes=nodes, edges=edges, radii=np.full(22, radius), levels=np.zeros(22, np.int32),
+        node_of_section=np.append(np.arange(22), -1).astype(np.int32),
+        section_sizes=np.append(np.full(21, 10.0), counts),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("length", "points", "crowd", "ends"),
+    [(4, 10, 10, 2), (4, 30, 10, 3), (7, 10, 10, 3), (4, 1, 0, 3)],
+    ids=["few points", "as many as elsewhere", "long", "threads"],
+)
+def test_a_short_end_of_few_points_is_noise_where_limbs_have_many(
+    length: float, points: float, crowd: float, ends: int
+) -> None:
+    """Four spacings have 40 points elsewhere, and two standard deviations less are 27."""
+    assert without_spurs(lone_spur(length, points), 1.0, crowd).ends == ends
+
+
+def test_an_end_that_stays_within_the_reach_of_other_limbs_goes() -> None:
+    """It runs three spacings along the limb, at 1.9 and at 2.1 of its radii."""
+    for away, ends in ((1.9, 2), (2.1, 3)):
+        nodes = np.array([*([x, 0, 0] for x in range(-10, 11)), *([x, away, 0] for x in range(1, 4))], float)
+        edges = np.array([*([i, i + 1] for i in range(20)), [10, 21], [21, 22], [22, 23]], np.int32)
+        curve = ConeCurve(
+            nodes=nodes, edges=edges, radii=np.ones(24), levels=np.zeros(24, np.int32),
+            node_of_section=np.append(np.arange(24), -1).astype(np.int32), section_sizes=np.ones(24),
+        )  # fmt: skip
+        assert without_spurs(curve, 1.0, 0.0).ends == ends
 
 
 # wires from cloud to skeleton

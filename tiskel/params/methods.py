@@ -85,7 +85,7 @@ class RobustParams(ContractionParams):
     straightness: float = 0.1  #: weight that holds a node between its two neighbours, in its share of the points
     rounds: int = 4  #: of the fit of round cones; half as many after a change to the graph
     regime: RegimeChoice = "auto"  #: what the limbs are: tubes, or wires thinner than the points are apart
-    topology: Topology = "auto"  #: of wires: whether limbs may close loops
+    topology: Topology = "auto"  #: whether limbs may close loops; auto: those of wires that persist, and of no crown
     root: Place | None = None  #: of wires: where limbs grow from, in the input's unit; None: where most points are
     seen_from: Place | None = None  #: where the sensor stood, in the input's unit, if there was one
 

@@ -42,6 +42,7 @@ from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
 from tiskel.methods.robust.sheets import flat_share, on_sheets
 from tiskel.methods.robust.thinning import remembered, thinned
+from tiskel.methods.robust.treelike import without_contacts
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
 from tiskel.timing import Stopwatch
@@ -82,7 +83,7 @@ def curve(trace: Trace, params: RobustParams) -> MethodCurve:
     if trace.sections is None:
         raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
     network = trace.prepared or prepared(remembered(trace), params.neighbours_for(len(trace.rows)), trace.surface)
-    best = on_sheets(_best(network, trace, params), params.seen_from)
+    best = on_sheets(without_contacts(_best(network, trace, params), params), params.seen_from)
     return _translated(best, trace, network)
 
 
@@ -95,7 +96,7 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
     if params.regime == "wire" or (params.regime == "auto" and surely_wires(network)):
         return wires(network, solid, params)
     best = fitted_curve(network, solid, trace.sections, params)
-    if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params), best):
+    if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params, best), best):
         return thin
     if flat_share(best) > FLAT:  # what encloses nothing has no inside to judge a curve by, though perhaps limbs
         inner = body_curve(network, solid, params) if solid.oriented.consistency > NEARLY_CLOSED else None

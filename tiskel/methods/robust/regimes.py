@@ -10,12 +10,13 @@ as well as tubes for a crown of many ends, better for a few twigs.
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import TINY, Numbers
+from tiskel.arrays import TINY, Indices, Numbers
 from tiskel.geometry.regime import Regime
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.checks import FAR, Candidate
 from tiskel.methods.robust.fit import foot_points, nearby_edges
 from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.treelike import CROWN
 from tiskel.methods.robust.wire import wire_curve
 from tiskel.params import RobustParams
 
@@ -25,11 +26,19 @@ LINE = 0.6  # (s1 - s2) / s1 with the root eigenvalues of the scatter: a line ab
 SURELY = 0.09  # share of such points from which on a cloud is of wires [tubes at most 0.07, thin trees 0.12 to 0.63]
 THIN = 2.2  # spacings: median radius up to which limbs are wires [generated trees to 2.0, noisy tubes from 2.3]
 CUT = 3.0  # most that a point counts as unexplained
-CROWN = 15  # ends from which on a body is tree-like [tubes with loops, sampled coarsely, have up to 9]
 NO_WORSE = 1.5  # of what tubes leave unexplained, what wires may leave of a crown [trees to 1.36, sheets from 2.9]
 THICKET = 40  # ends of a crown in which loops that no handle confirms are contacts of limbs
 SLENDER = 3.0  # spacings: median radius of such limbs, at most
 BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
+
+
+# What a limb of tubes has to have to be kept among wires, whose crown no tube explains [limbs of scanned and generated
+# trees 0.04 to 0.15 and 0.44 up; what fronts make of noisy twigs 0.07 to 0.25 and 0.12 to 0.6].
+RESOLVED = 2.0  # spacings in its radius, at least
+SHARP = 0.125  # root mean square of the distances of its points from it, in radii, at most
+COVERED = 0.4  # share of its surface with points, at least
+MANY = 0.2  # share of points on such limbs from which on there are some [scans 0.34 up, noisy twigs to 0.10]
+SHORTEST = 0.5  # radii in the length of an edge, when its surface is asked for: shorter ones have the points of a ball
 
 
 def surely_wires(network: Network) -> bool:
@@ -47,13 +56,39 @@ def maybe_wires(found: Candidate) -> bool:
     return not found.solid.trusted or found.curve.loops > (found.solid.handles or 0)
 
 
-def wires(network: Network, solid: Solid, params: RobustParams) -> Candidate:
-    """Return the curve of the wire regime, and what judges it."""
-    curve, sections = wire_curve(network, params)
+def wires(network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None) -> Candidate:
+    """Return the curve of the wire regime, and what judges it; thick limbs are those of tubes that are known."""
+    curve, sections = wire_curve(network, params, None if tubes is None else resolved(tubes))
     node = curve.node_of_section[sections.section]
     owned = np.flatnonzero(node >= 0).astype(np.int32)
     fit = foot_points(curve, network.points, owned, node[owned], nearby_edges(curve))
     return Candidate(fit, sections, network, solid, int(curve.bridged.sum()))
+
+
+def resolved(tubes: Candidate) -> Indices:
+    """Return (n,) for every point the node of the tube that it lies on, -1 where there is none, or none to rely on.
+
+    Where few points are on limbs that are surely resolved, fronts made up the
+    others, too; where many are, limbs that are half as sure are kept as well.
+    """
+    sure = _on_tubes(tubes, SHARP, COVERED)
+    return _on_tubes(tubes, 2 * SHARP, COVERED / 2) if (sure >= 0).mean() > MANY else np.full_like(sure, -1)
+
+
+def _on_tubes(tubes: Candidate, sharp: float, covered: float) -> Indices:
+    fit, curve = tubes.fit, tubes.curve
+    many = np.maximum(np.bincount(fit.edge, minlength=len(curve.edges)), 1)
+    spacings = tubes.network.spacings[fit.rows]
+    spacing, radius, spread = (
+        np.bincount(fit.edge, values, minlength=len(curve.edges)) / many
+        for values in (spacings, fit.radii, fit.residual**2)
+    )
+    area = 2 * np.pi * radius * np.maximum(curve.lengths, SHORTEST * radius)
+    good = (radius > RESOLVED * spacing) & (np.sqrt(spread) < sharp * radius) & (many * spacing**2 > covered * area)
+    node = np.full(len(tubes.network.points), -1, np.int32)
+    on = good[fit.edge] & (fit.residual < np.maximum(fit.radii, spacings))
+    node[fit.rows[on]] = fit.nodes[on]
+    return node
 
 
 def shorter(thin: Candidate, thick: Candidate) -> bool:

@@ -13,11 +13,12 @@ TEASAR, Sato et al. 2000; Verroust and Lazarus 2000):
 6. Loops, where ends meet head on and the body is no tree (:mod:`.loops`).
 """
 
+from tiskel.arrays import Indices
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.network import Network
 from tiskel.methods.robust.wire.curve import curve_of
-from tiskel.methods.robust.wire.levels import levels_of
-from tiskel.methods.robust.wire.limbs import limbs_of
+from tiskel.methods.robust.wire.levels import RESOLVED, THREADS, levels_of
+from tiskel.methods.robust.wire.limbs import crowding, limbs_of
 from tiskel.methods.robust.wire.links import BRIDGE, links_of
 from tiskel.methods.robust.wire.loops import with_loops
 from tiskel.methods.robust.wire.routes import routes_of
@@ -25,17 +26,27 @@ from tiskel.methods.robust.wire.spurs import without_spurs
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
 
+# Found by trial on generated trees, N r / L of their twigs from 0.1 to 5, clean and noisy.
+FEW = 3.8  # points to a spacing of length, below which limbs are threads [N r / L to 1: 1.3 to 3.7, above it 4.0 up]
+SELDOM = 0.28  # share of points on rings, below which what is a ring there is chance [noisy twigs to 0.26]
 SMALLEST_PART = 10  # points; separate parts with fewer get no curve, unless there are no larger ones
 
 
-def wire_curve(network: Network, params: RobustParams) -> tuple[ConeCurve, Sections]:
-    """Return the curve of a cloud of wires, and the sections that its nodes stand for."""
+def wire_curve(network: Network, params: RobustParams, tubes: Indices | None = None) -> tuple[ConeCurve, Sections]:
+    """Return the curve of a cloud of wires, and the sections that its nodes stand for.
+
+    tubes (n,) name the sections of points on limbs that are known, -1 for others.
+    """
     points = network.points
     links = links_of(points, max(SMALLEST_PART, int(params.least_part * len(points))))
     root = None if params.root is None else network.placed(params.root)
     routes = routes_of(points, links, root)
-    levels = levels_of(points, links, routes, BRIDGE)
+    levels = levels_of(points, links, routes, BRIDGE, RESOLVED, tubes)
     limbs = limbs_of(levels, links.spacing)
+    crowd = crowding(levels, limbs, links.spacing)
+    if crowd < FEW and levels.on_rings < SELDOM:
+        levels = levels_of(points, links, routes, BRIDGE, THREADS, tubes)
+        limbs = limbs_of(levels, links.spacing)
     curve, sections = curve_of(points, links.spacing, levels, limbs, params)
-    curve = without_spurs(curve)
+    curve = without_spurs(curve, links.spacing, crowd if crowd >= FEW else 0.0)
     return with_loops(curve, points, sections, links, params.topology), sections

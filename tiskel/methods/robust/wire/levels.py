@@ -1,14 +1,17 @@
 """Sections of a cloud of wires and thick limbs: what lies in one bin of the way to the root, and hangs together.
 
-How far links may reach within a section is decided section by section. On wires
-they must be short, or neighbouring twigs become one; on a tube they must be long,
-or its ring falls apart. So both are made, and the long ones stand where their
-points lie all about an axis, at about one distance, as those of a tube do.
+How far links may reach within a section, and how long it is, is decided section by
+section. On wires both must be short, or neighbouring twigs become one; on a tube
+they must be long, or its ring falls apart. So both are made, and the long ones
+stand where their points lie all about an axis, at about one distance, as those of
+a tube do. What lies about an axis by chance, in a crown of noisy twigs, is told
+from that by how thick the limbs of the cloud are at all.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
@@ -18,12 +21,34 @@ from tiskel.methods.robust.wire.links import Links
 from tiskel.methods.robust.wire.routes import Routes
 
 # Found by trial on generated trees, in spacings unless said otherwise.
-BIN = 1.5  # length of a bin
-FINE = 1.25  # reach of links on a wire
-COARSE = 2.5  # reach of links about a tube, and beside a limb
+BIN = 1.5  # length of a bin about a tube
+FINE, COARSE = 1.25, 2.5  # reach of links on a wire, and about a tube
 FEWEST = 6  # points of a ring
 WIDEST_GAP = np.radians(110)  # largest angle about the axis without a point of the ring; three twigs leave 120 degrees
-RAGGED = 0.4  # spread of the distance to the axis, in its mean; of a filled disc it is 0.35, of points on a line 0.58
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What makes one limb of points, by how thick the limbs of a cloud are.
+
+    Attributes
+    ----------
+    bin : float
+        Length of a bin of the way on a wire, in spacings.
+    beside : float
+        Reach of links, in spacings, beside a limb.
+    ragged : float
+        Most that the distance to the axis of a ring spreads, in its mean; of a
+        filled disc it is 0.35, of points on a line 0.58.
+    """
+
+    bin: float
+    beside: float
+    ragged: float
+
+
+RESOLVED = Kind(bin=1.5, beside=2.5, ragged=0.4)  # limbs of several points to a spacing of their length
+THREADS = Kind(bin=1.0, beside=1.75, ragged=0.3)  # those of few: what lies all about an axis is seldom a ring
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,17 +81,31 @@ class Levels:
     beside: list[list[int]]
     rings: Mask
 
+    @property
+    def on_rings(self) -> float:
+        """The share of the points that lie in sections all about an axis."""
+        used = self.section[self.section >= 0]
+        return float(self.rings[used].mean()) if len(used) else 0.0
 
-def levels_of(points: Points, links: Links, routes: Routes, bridge: float) -> Levels:
-    """Return the sections of points (n, 3); bridge is the length of a link, in spacings, that leads over a gap."""
+
+def levels_of(
+    points: Points, links: Links, routes: Routes, bridge: float, kind: Kind, tubes: Indices | None = None
+) -> Levels:
+    """Return the sections of points (n, 3).
+
+    bridge is the length of a link, in spacings, that leads over a gap; tubes
+    (n,) name the sections of points on limbs that are known, -1 for others.
+    """
     count, known = len(points), np.isfinite(routes.length)
-    bins = np.where(known, np.floor(np.nan_to_num(routes.length) / BIN), -1).astype(np.int64)
     one, other = links.first, links.second
     lengths = links.lengths / links.spacing
-    alike = bins[one] == bins[other]
-    fine, coarse = (_pieces(one, other, alike & (lengths <= reach), count) for reach in (FINE, COARSE))
-    rings = _rings(points[known], routes.length[known], coarse[known], int(coarse.max()) + 1)
+    wide, bins = (_bins(routes.length, length) for length in (BIN, kind.bin))
+    coarse = _pieces(one, other, (wide[one] == wide[other]) & (lengths <= COARSE), count)
+    fine = _pieces(one, other, (bins[one] == bins[other]) & (lengths <= FINE), count)
+    rings = _rings(points[known], routes.length[known], coarse[known], int(coarse.max()) + 1, kind.ragged)
     label = np.where(rings[coarse], coarse, int(coarse.max()) + 1 + fine)
+    if tubes is not None:
+        label = np.where(tubes >= 0, int(label.max()) + 1 + tubes, label)
     section = np.full(count, -1, np.int32)
     section[known] = np.unique(label[known], return_inverse=True)[1].ravel()
     size = np.bincount(section[known])
@@ -76,12 +115,17 @@ def levels_of(points: Points, links: Links, routes: Routes, bridge: float) -> Le
     gap = np.linalg.norm(points[lowest] - points[routes.before[lowest]], axis=1)
     tops = np.zeros(len(size))
     np.maximum.at(tops, section[known], routes.length[known])
-    near = (np.abs(bins[one] - bins[other]) <= 1) & (lengths <= COARSE) & (section[one] != section[other])
+    near = (np.abs(bins[one] - bins[other]) <= 1) & (lengths <= kind.beside) & (section[one] != section[other])
     return Levels(
         section, sums(points[known], section[known], len(size)) / size[:, None], parents,
         gap > bridge * links.spacing, tops, _lists(section[one[near]], section[other[near]], len(size)),
-        rings[coarse[lowest]],
+        rings[coarse[lowest]] if tubes is None else rings[coarse[lowest]] | (tubes[lowest] >= 0),
     )  # fmt: skip
+
+
+def _bins(length: Numbers, of: float) -> npt.NDArray[np.int64]:
+    """Return (n,) the number of every point's bin, -1 for points without a way."""
+    return np.where(np.isfinite(length), np.floor(np.nan_to_num(length) / of), -1).astype(np.int64)
 
 
 def _pieces(one: Indices, other: Indices, chosen: Mask, count: int) -> Indices:
@@ -103,7 +147,7 @@ def _lists(one: Indices, other: Indices, count: int) -> list[list[int]]:
     return [rows[start:stop] for start, stop in zip(starts, starts[1:], strict=False)]
 
 
-def _rings(points: Points, length: Numbers, label: Indices, count: int) -> Mask:
+def _rings(points: Points, length: Numbers, label: Indices, count: int, ragged: float) -> Mask:
     """Tell of every labelled set of points (n, 3) whether they lie all about an axis, at about one distance."""
     size = np.maximum(np.bincount(label, minlength=count), 1)
     offset = points - (sums(points, label, count) / size[:, None])[label]
@@ -116,7 +160,7 @@ def _rings(points: Points, length: Numbers, label: Indices, count: int) -> Mask:
     mean = np.bincount(label, away, minlength=count) / size
     spread = np.sqrt(np.maximum(np.bincount(label, away**2, minlength=count) / size - mean**2, 0))
     gaps = widest_gaps(offset, axis, label)
-    return np.asarray((size >= FEWEST) & (gaps < WIDEST_GAP) & (spread < RAGGED * mean))
+    return np.asarray((size >= FEWEST) & (gaps < WIDEST_GAP) & (spread < ragged * mean))
 
 
 def widest_gaps(offset: Points, axis: Points, label: Indices) -> Numbers:

@@ -68,6 +68,20 @@ def limbs_of(levels: Levels, spacing: float) -> Limbs:
     return Limbs(np.array(edges, np.int32).reshape(-1, 2), np.array(bridged, bool), owner)
 
 
+def crowding(levels: Levels, limbs: Limbs, spacing: float) -> float:
+    """Return how many points there are to a spacing of the length of the limbs, in the median of their sections.
+
+    On a thread it is about 1, on a tube of the radius r about 2 pi r in spacings:
+    this is how thick the limbs are, whatever noise makes of their distances.
+    """
+    count = len(levels.centres)
+    step = np.linalg.norm(np.diff(levels.centres[limbs.edges], axis=1)[:, 0], axis=1) / spacing
+    length = np.bincount(limbs.edges.ravel(), np.repeat(step, 2) / 2, minlength=count)
+    points = np.bincount(limbs.owner[levels.section[levels.section >= 0]], minlength=count)
+    on = length > 0
+    return float(np.median(points[on] / length[on])) if on.any() else 0.0
+
+
 def _beside(levels: Levels, owner: Indices, section: int) -> int:
     """Return the nearest section on a limb that is within reach of a section or stands for one that is; -1 for none."""
     found = sorted({int(owner[other]) for other in levels.beside[section] if owner[other] >= 0})

@@ -89,18 +89,20 @@ def _joins(points: Points, graph: sparse.csr_array, spacing: float, least: int) 
 
     Round by round every piece but the largest is joined to the nearest other
     (Boruvka's minimum spanning tree), where the gap is narrow against the larger
-    of the two. A small piece further away is no part of the body.
+    of the two; where none is, to the nearest that is larger than itself, as two
+    twigs that a gap cut off may be nearest to each other. A small piece further
+    away is no part of the body.
     """
     piece = connected_components(graph, directed=False)[1].astype(np.int32)
     joins: set[tuple[int, int]] = set()  # both pieces may find the same
     while piece.max() > 0:
         sizes = np.bincount(piece)
-        found = [
-            link
-            for link in _shortest(points, piece, int(sizes.argmax()))
-            if _narrow(points, piece, link, spacing, least)
-        ]
-        if not found:
+        for rank in (np.zeros(len(sizes), np.int32), np.argsort(np.argsort(-sizes, kind="stable")).astype(np.int32)):
+            links = _shortest(points, piece, int(sizes.argmax()), rank)
+            found = [link for link in links if _narrow(points, piece, link, spacing, least)]
+            if found:
+                break
+        else:
             break
         joins |= {(min(one, other), max(one, other)) for _, one, other in found}
         ends = np.array([(piece[one], piece[other]) for _, one, other in found])
@@ -111,14 +113,18 @@ def _joins(points: Points, graph: sparse.csr_array, spacing: float, least: int) 
     return np.array(sorted(joins), np.int32).reshape(-1, 2), np.asarray(kept)
 
 
-def _shortest(points: Points, piece: Indices, largest: int) -> list[tuple[float, int, int]]:
-    """Return the shortest link from every piece but the largest to another: its length and its two points."""
+def _shortest(points: Points, piece: Indices, largest: int, rank: Indices) -> list[tuple[float, int, int]]:
+    """Return the shortest link from every piece but the largest to another: its length and its two points.
+
+    The other is of a lower rank, or of the same.
+    """
     tree, rows = cKDTree(points), np.flatnonzero(piece != largest)
     best: dict[int, tuple[float, int, int]] = {}
     count = min(SEARCH, len(points))
     while len(rows):
         distance, near = tree.query(points[rows], k=count)
-        other = piece[near] != piece[rows][:, None]
+        one = piece[rows][:, None]
+        other = (piece[near] != one) & (rank[piece[near]] <= rank[one])
         has = other.any(axis=1)
         nearest = other.argmax(axis=1)
         for place in np.flatnonzero(has).tolist():

@@ -1,0 +1,54 @@
+"""Loops of tree-like bodies, and tubes that are kept among wires."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tiskel import RobustParams, ShapeParams, contract, extract_skeleton, make_shape, shape_graph
+from tiskel.arrays import Points
+from tiskel.gallery.trees import thickened, tree
+from tiskel.geometry.solid import solid_of
+from tiskel.methods.robust import treelike
+from tiskel.methods.robust.checks import Candidate
+from tiskel.methods.robust.network import prepared
+from tiskel.methods.robust.pipeline import fitted_curve
+from tiskel.methods.robust.regimes import resolved
+from tiskel.methods.robust.treelike import without_contacts
+
+
+def tubes_of(points: Points) -> Candidate:
+    """Return the first curve of tubes of a cloud."""
+    trace = contract(points).as_trace()[0]
+    assert trace.sections is not None
+    network = trace.prepared or prepared(points, 14)
+    oriented = network.oriented(np.ascontiguousarray(trace.points @ network.axes.T))
+    return fitted_curve(network, solid_of(oriented), trace.sections, RobustParams())
+
+
+@pytest.mark.parametrize(("topology", "loops", "ends"), [("auto", 1, 0), ("loops", 1, 0), ("tree", 0, 2)])
+def test_a_torus_is_cut_open_only_where_it_is_said_to_be_a_tree(topology: str, loops: int, ends: int) -> None:
+    cloud = make_shape(shape_graph("torus"), ShapeParams(count=2000))[0]
+    s = extract_skeleton(contract(cloud, RobustParams(topology=topology)))  # type: ignore[arg-type]
+    assert (s.components, s.loops, s.ends) == (1, loops, ends)
+
+
+def test_a_crown_keeps_the_loops_that_handles_confirm_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = tubes_of(make_shape(shape_graph("torus"), ShapeParams(count=2000))[0])
+    params = RobustParams()
+    assert found.solid.handles == 1
+    unknown = replace(found, solid=replace(found.solid, handles=None))
+    assert without_contacts(unknown, params) is unknown  # no end: no crown
+    monkeypatch.setattr(treelike, "CROWN", 0)
+    assert without_contacts(found, params) is found
+    cut = without_contacts(unknown, params)
+    assert (cut.curve.loops, cut.curve.components) == (0, 1)
+    assert len(cut.curve.edges) == len(found.curve.edges) - 1
+
+
+def test_points_of_tubes_lie_on_them_and_no_twig_of_a_crown_does() -> None:
+    limbs = resolved(tubes_of(make_shape(shape_graph("y"), ShapeParams(count=4096))[0]))
+    assert (limbs >= 0).mean() > 0.9
+    twigs = thickened(tree("leader", tips=100, seed=3), 4000, 0.3)
+    crown = make_shape(twigs, ShapeParams(count=4000, noise=3.0))[0]
+    assert (resolved(tubes_of(crown)) == -1).all()
