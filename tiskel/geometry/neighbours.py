@@ -8,6 +8,7 @@ import numpy.typing as npt
 from tiskel.arrays import Indices, Lists, Numbers, Points, Stack, Table
 from tiskel.geometry.rings import Rings
 
+ALONE = 8192  # points that one thread halves by itself, in a millisecond: as long as a few calls of a kernel
 Axes = Stack  #: shape (n, 3, 3), rows by descending eigenvalue
 
 
@@ -30,11 +31,28 @@ def nearest_neighbours(points: Points, k: int) -> tuple[Lists, Table]:
     """
     from tiskel.kernels import neighbours as kernel
 
-    curve = morton_curve(points)
+    tree = _tree(points)
     nearest = np.empty((len(points), k), np.int32)
     squares = np.empty((len(points), k))
-    kernel.nearest(curve.points, curve.order, curve.codes, curve.low, curve.per_length, k, nearest, squares)
+    for first in range(0, k, kernel.LISTED):
+        kernel.nearest(*tree, first, min(first + kernel.LISTED, k), nearest, squares)
     return nearest, squares
+
+
+def _tree(points: Points) -> tuple[Points, Indices, int, Points, Points]:
+    """Return the points (n, 3) in the order of a k-d tree, their rows, its depth, and the corners of its boxes."""
+    from tiskel.kernels import neighbours as kernel
+
+    count = len(points)
+    depth = ((count - 1) // kernel.BUCKET).bit_length()
+    ordered, rows = np.array(points, order="C"), np.arange(count, dtype=np.int32)
+    low, high = np.empty((2, 2 << depth, 3))
+    level = 0
+    while level < depth and count >> level > ALONE:
+        kernel.halve(level, level, depth, ordered, rows, low, high)
+        level += 1
+    kernel.halve(level, depth, depth, ordered, rows, low, high)
+    return ordered, rows, depth, low, high
 
 
 @dataclass(frozen=True)
@@ -74,7 +92,7 @@ class MortonCurve:
         (m,) int32
             From 0 to n.
         """
-        from tiskel.kernels import neighbours as kernel
+        from tiskel.kernels import morton as kernel
 
         codes = np.empty(len(queries), np.int64)
         inside = np.clip(queries, self.points.min(axis=0), self.points.max(axis=0))
@@ -84,7 +102,7 @@ class MortonCurve:
 
 def morton_curve(points: Points) -> MortonCurve:
     """Return the points (n, 3) along the Morton curve."""
-    from tiskel.kernels import neighbours as kernel
+    from tiskel.kernels import morton as kernel
 
     low = points.min(axis=0)
     per_length = (2**kernel.LEVELS - 1) / (float(np.ptp(points, axis=0).max()) or 1.0)
