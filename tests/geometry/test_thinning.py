@@ -3,20 +3,10 @@
 import numpy as np
 from scipy import ndimage
 
+from reference import thinning as plain
+from reference.thinning import is_simple
 from tiskel.geometry.solid import betti_numbers
 from tiskel.geometry.thinning import Grid, thinned
-
-BY_CORNERS, BY_EDGES, BY_FACES = (ndimage.generate_binary_structure(3, rank) for rank in (3, 2, 1))
-
-
-def is_simple(cubes: Grid) -> bool:
-    """Tell whether the middle one of 27 cubes is simple, by the definition of Bertrand and Malandain."""
-    others = cubes.copy()
-    others[1, 1, 1] = False
-    empty = BY_EDGES & ~cubes
-    pieces = ndimage.label(empty, BY_FACES)[0]
-    at_faces = set(pieces[BY_FACES & empty].tolist()) - {0}
-    return ndimage.label(others, BY_CORNERS)[1] == 1 and len(at_faces) == 1
 
 
 def test_a_cube_goes_where_it_is_simple() -> None:
@@ -31,6 +21,15 @@ def test_a_cube_goes_where_it_is_simple() -> None:
         simple.append(is_simple(cubes))
         assert bool(thinned(cubes, np.zeros(cubes.shape), kept)[1, 1, 1]) != simple[-1]
     assert 40 < sum(simple) < 160
+
+
+def test_what_is_left_is_what_counting_pieces_leaves() -> None:
+    """Of a sponge, with ties in the order and cubes that are kept: the same cubes, one by one."""
+    generator = np.random.default_rng(4)
+    sponge: Grid = ndimage.gaussian_filter(generator.normal(size=(12, 11, 10)), 1) > 0
+    order = generator.integers(0, 5, size=sponge.shape).astype(float)
+    kept: Grid = generator.random(sponge.shape) < 0.03
+    np.testing.assert_array_equal(thinned(sponge, order, kept), plain.thinned(sponge, order, kept))
 
 
 def test_topology_stays_and_no_simple_cube_is_left() -> None:
