@@ -3,6 +3,7 @@
 import taichi as ti
 
 from .runtime import started
+from .spreading import is_piece, spread
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)
 Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
@@ -79,30 +80,33 @@ def _coverage(
     coincident: Indices,  # (m,) points found at the query itself
 ):
     """Look at the points outward from a start along their order, until enough of the sphere is covered."""
-    for i in queries:
-        for c in range(CELLS):
-            seen[i, c] = -1
-        share = 0.0
-        same = 0
-        below, above = starts[i] - 1, starts[i]
-        while share < enough and (below >= 0 or above < points.shape[0]):
-            for side in range(2):
-                j = below + side * (above - below)
-                if j >= 0 and j < points.shape[0]:
-                    d = points[j] - queries[i]
-                    if d.norm_sqr() > 0.0:
-                        share += mark(seen, areas, i, d, j)
-                        if spacing[j] * spacing[j] * SIDE * SIDE > d.norm_sqr():  # the disc meets several cells
-                            u, v = across(d)
-                            for k in range(9):
-                                aside = (k % 3 - 1.0) * u + (k // 3 - 1.0) * v
-                                share += mark(seen, areas, i, d + spacing[j] * aside, j)
-                    else:
-                        same += 1
-            below -= 1
-            above += 1
-        covered[i] = share
-        coincident[i] = same
+    bits = spread(queries.shape[0])
+    for number in range(queries.shape[0] << bits):
+        if is_piece(number, bits):
+            i = number >> bits
+            for c in range(CELLS):
+                seen[i, c] = -1
+            share = 0.0
+            same = 0
+            below, above = starts[i] - 1, starts[i]
+            while share < enough and (below >= 0 or above < points.shape[0]):
+                for side in range(2):
+                    j = below + side * (above - below)
+                    if j >= 0 and j < points.shape[0]:
+                        d = points[j] - queries[i]
+                        if d.norm_sqr() > 0.0:
+                            share += mark(seen, areas, i, d, j)
+                            if spacing[j] * spacing[j] * SIDE * SIDE > d.norm_sqr():  # the disc meets several cells
+                                u, v = across(d)
+                                for k in range(9):
+                                    aside = (k % 3 - 1.0) * u + (k // 3 - 1.0) * v
+                                    share += mark(seen, areas, i, d + spacing[j] * aside, j)
+                        else:
+                            same += 1
+                below -= 1
+                above += 1
+            covered[i] = share
+            coincident[i] = same
 
 
 cells = started(_cells)

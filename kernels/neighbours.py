@@ -16,9 +16,9 @@ what is left out is farther to the last bit.
 import taichi as ti
 
 from .runtime import started
+from .spreading import is_piece, spread
 
 BUCKET = 16  # most points of a leaf: with 8, searches cost the same and the tree a tenth more
-TASK = 8  # leaves that a thread takes at once: a hundred points or so, a tenth of a millisecond
 LISTED = 32  # most neighbours found at once; Taichi unrolls longer lists, and is slow to compile them
 LAST = 2**31 - 1  # the row that stands for no point: behind all others, were they infinitely far
 
@@ -84,6 +84,17 @@ def bounds(points: ti.template(), first: ti.i32, stop: ti.i32):
     return low, high
 
 
+@ti.func
+def widest(sides) -> ti.i32:
+    """Return the first of the axes whose side is longest."""
+    axis = 0
+    if sides[1] > sides[0]:
+        axis = 1
+    if sides[2] > ti.max(sides[0], sides[1]):
+        axis = 2
+    return axis
+
+
 @ti.kernel
 def _halve(
     top: ti.i32,  # level whose nodes are shared out among threads
@@ -97,24 +108,20 @@ def _halve(
     high: Numbers,
 ):
     n = points.shape[0]
-    ti.loop_config(block_dim=1)
-    for part in range(1 << top):
-        for level in range(top, bottom + 1):
-            below = level - top
-            for node in range(part << below, (part + 1) << below):
-                first, stop = first_of(node, n, level), first_of(node + 1, n, level)
-                lowest, highest = bounds(points, first, stop)
-                for axis in ti.static(range(3)):
-                    low[(1 << level) + node, axis] = lowest[axis]
-                    high[(1 << level) + node, axis] = highest[axis]
-                if level < depth:
-                    side = highest - lowest
-                    widest = 0
-                    if side[1] > side[0]:
-                        widest = 1
-                    if side[2] > ti.max(side[0], side[1]):
-                        widest = 2
-                    select(points, rows, first, stop - 1, first_of(2 * node + 1, n, level + 1), widest)
+    bits = spread(1 << top)
+    for number in range((1 << top) << bits):
+        if is_piece(number, bits):
+            for level in range(top, bottom + 1):
+                below = level - top
+                for node in range((number >> bits) << below, ((number >> bits) + 1) << below):
+                    first, stop = first_of(node, n, level), first_of(node + 1, n, level)
+                    lowest, highest = bounds(points, first, stop)
+                    for axis in ti.static(range(3)):
+                        low[(1 << level) + node, axis] = lowest[axis]
+                        high[(1 << level) + node, axis] = highest[axis]
+                    if level < depth:
+                        half = first_of(2 * node + 1, n, level + 1)
+                        select(points, rows, first, stop - 1, half, widest(highest - lowest))
 
 
 @ti.func
@@ -197,37 +204,39 @@ def _nearest(
     n = points.shape[0]
     leaves = 1 << depth
     last = stop - first - 1
-    ti.loop_config(block_dim=TASK)
-    for leaf in range(leaves):
-        for s in range(first_of(leaf, n, depth), first_of(leaf + 1, n, depth)):
-            p, row = points[s], rows[s]
-            before, row_before = ti.f64(-1.0), -1  # only what is farther counts
-            if first > 0:
-                before, row_before = squares[row, first - 1], nearest[row, first - 1]
-            list_squares = ti.Vector([ti.math.inf for _ in range(LISTED)], ti.f64)
-            list_rows = ti.Vector([LAST for _ in range(LISTED)], ti.i32)
-            slot = 0
-            node = leaves + leaf
-            top = node
-            near = 0
-            while top > 0:
-                hit = square_to_box(p, low[node], high[node]) <= list_squares[last]
-                if hit and node < leaves:
-                    node = 2 * node + near
-                else:
-                    if hit:
-                        for j in range(first_of(node - leaves, n, depth), first_of(node - leaves + 1, n, depth)):
-                            square = square_of(points[j] - p)
-                            if square <= list_squares[last] and closer(before, row_before, square, rows[j]):
-                                slot = offer(list_squares, list_rows, slot, last, square, rows[j])
-                    node = behind(node, top, near)
-                    if node == top:
-                        top = other_half(top, leaves + leaf)
-                        node = top
-                        near = 1 - (top & 1)
-            for c in range(first, stop):
-                nearest[row, c] = list_rows[c - first]
-                squares[row, c] = list_squares[c - first]
+    bits = spread(leaves)
+    for number in range(leaves << bits):
+        leaf = number >> bits
+        if is_piece(number, bits):
+            for s in range(first_of(leaf, n, depth), first_of(leaf + 1, n, depth)):
+                p, row = points[s], rows[s]
+                before, row_before = ti.f64(-1.0), -1  # only what is farther counts
+                if first > 0:
+                    before, row_before = squares[row, first - 1], nearest[row, first - 1]
+                list_squares = ti.Vector([ti.math.inf for _ in range(LISTED)], ti.f64)
+                list_rows = ti.Vector([LAST for _ in range(LISTED)], ti.i32)
+                slot = 0
+                node = leaves + leaf
+                top = node
+                near = 0
+                while top > 0:
+                    hit = square_to_box(p, low[node], high[node]) <= list_squares[last]
+                    if hit and node < leaves:
+                        node = 2 * node + near
+                    else:
+                        if hit:
+                            for j in range(first_of(node - leaves, n, depth), first_of(node - leaves + 1, n, depth)):
+                                square = square_of(points[j] - p)
+                                if square <= list_squares[last] and closer(before, row_before, square, rows[j]):
+                                    slot = offer(list_squares, list_rows, slot, last, square, rows[j])
+                        node = behind(node, top, near)
+                        if node == top:
+                            top = other_half(top, leaves + leaf)
+                            node = top
+                            near = 1 - (top & 1)
+                for c in range(first, stop):
+                    nearest[row, c] = list_rows[c - first]
+                    squares[row, c] = list_squares[c - first]
 
 
 halve = started(_halve)

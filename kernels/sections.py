@@ -3,6 +3,7 @@
 import taichi as ti
 
 from .runtime import started
+from .spreading import is_piece, spread
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)
 Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
@@ -20,12 +21,15 @@ def in_section(offset, direction, half: ti.f64, reach: ti.f64) -> bool:
 @ti.kernel
 def _section_counts(points: Points, centres: Points, x: Points, half: ti.f64, reach: Numbers, out: Indices):
     """Number of points no further than half from each plane and reach from its centre in it."""
-    for s in centres:
-        count = 0
-        for j in range(points.shape[0]):
-            if in_section(points[j] - centres[s], x[s], half, reach[s]):
-                count += 1
-        out[s] = count
+    bits = spread(centres.shape[0])
+    for number in range(centres.shape[0] << bits):
+        if is_piece(number, bits):
+            s = number >> bits
+            count = 0
+            for j in range(points.shape[0]):
+                if in_section(points[j] - centres[s], x[s], half, reach[s]):
+                    count += 1
+            out[s] = count
 
 
 @ti.kernel
@@ -45,16 +49,19 @@ def _section_points(
     ahead: Numbers,  # along x
 ):
     """Rows of these points, ascending in every section, and where they are in its frame."""
-    for s in centres:
-        at = offsets[s]
-        for j in range(points.shape[0]):
-            offset = points[j] - centres[s]
-            if in_section(offset, x[s], half, reach[s]):
-                rows[at] = j
-                across[at] = offset.dot(y[s])
-                up[at] = offset.dot(z[s])
-                ahead[at] = offset.dot(x[s])
-                at += ti.i64(1)
+    bits = spread(centres.shape[0])
+    for number in range(centres.shape[0] << bits):
+        if is_piece(number, bits):
+            s = number >> bits
+            at = offsets[s]
+            for j in range(points.shape[0]):
+                offset = points[j] - centres[s]
+                if in_section(offset, x[s], half, reach[s]):
+                    rows[at] = j
+                    across[at] = offset.dot(y[s])
+                    up[at] = offset.dot(z[s])
+                    ahead[at] = offset.dot(x[s])
+                    at += ti.i64(1)
 
 
 section_counts = started(_section_counts)

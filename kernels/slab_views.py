@@ -8,6 +8,7 @@ import taichi as ti
 
 from .runtime import started
 from .slabs import in_slab
+from .spreading import is_piece, spread
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)
 Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
@@ -26,13 +27,16 @@ def _nearest_in_slab(
     nearest: Numbers,  # (m,) distance in the plane, infinite where the slab is empty
 ):
     """Distance in its plane of the nearest point of each slab."""
-    for s in centres:
-        best = ti.math.inf
-        for j in range(points.shape[0]):
-            if in_slab(points[j], centres[s], x[s], half[s]):
-                offset = points[j] - centres[s]
-                best = ti.min(best, (offset - offset.dot(x[s]) * x[s]).norm())
-        nearest[s] = best
+    bits = spread(centres.shape[0])
+    for number in range(centres.shape[0] << bits):
+        if is_piece(number, bits):
+            s = number >> bits
+            best = ti.math.inf
+            for j in range(points.shape[0]):
+                if in_slab(points[j], centres[s], x[s], half[s]):
+                    offset = points[j] - centres[s]
+                    best = ti.min(best, (offset - offset.dot(x[s]) * x[s]).norm())
+            nearest[s] = best
 
 
 @ti.kernel
@@ -49,19 +53,22 @@ def _seen_around(
     highest: Table,  # (m, BINS) the highest, infinite below zero where there is none
 ):
     """Angles, from -pi to pi, at which points of each slab stand about its centre."""
-    for s in centres:
-        for b in range(BINS):
-            lowest[s, b] = ti.math.inf
-            highest[s, b] = -ti.math.inf
-        for j in range(points.shape[0]):
-            if in_slab(points[j], centres[s], x[s], half[s]):
-                offset = points[j] - centres[s]
-                across, up = offset.dot(y[s]), offset.dot(z[s])
-                if across * across + up * up <= reach[s] * reach[s]:
-                    angle = ti.atan2(up, across)
-                    b = ti.min(BINS - 1, ti.cast((angle / ti.math.pi + 1.0) * 0.5 * BINS, ti.i32))
-                    lowest[s, b] = ti.min(lowest[s, b], angle)
-                    highest[s, b] = ti.max(highest[s, b], angle)
+    bits = spread(centres.shape[0])
+    for number in range(centres.shape[0] << bits):
+        if is_piece(number, bits):
+            s = number >> bits
+            for b in range(BINS):
+                lowest[s, b] = ti.math.inf
+                highest[s, b] = -ti.math.inf
+            for j in range(points.shape[0]):
+                if in_slab(points[j], centres[s], x[s], half[s]):
+                    offset = points[j] - centres[s]
+                    across, up = offset.dot(y[s]), offset.dot(z[s])
+                    if across * across + up * up <= reach[s] * reach[s]:
+                        angle = ti.atan2(up, across)
+                        b = ti.min(BINS - 1, ti.cast((angle / ti.math.pi + 1.0) * 0.5 * BINS, ti.i32))
+                        lowest[s, b] = ti.min(lowest[s, b], angle)
+                        highest[s, b] = ti.max(highest[s, b], angle)
 
 
 nearest_in_slab = started(_nearest_in_slab)

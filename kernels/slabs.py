@@ -3,6 +3,7 @@
 import taichi as ti
 
 from .runtime import started
+from .spreading import is_piece, spread
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)
 Indices = ti.types.ndarray(dtype=ti.i32, ndim=1)
@@ -18,23 +19,29 @@ def in_slab(point, centre, direction, half: ti.f64) -> bool:
 @ti.kernel
 def _slab_counts(points: Points, centres: Points, directions: Points, half: ti.f64, out: Indices):
     """Number of points no further than half from the plane through each centre across each direction."""
-    for s in centres:
-        count = 0
-        for j in range(points.shape[0]):
-            if in_slab(points[j], centres[s], directions[s], half):
-                count += 1
-        out[s] = count
+    bits = spread(centres.shape[0])
+    for number in range(centres.shape[0] << bits):
+        if is_piece(number, bits):
+            s = number >> bits
+            count = 0
+            for j in range(points.shape[0]):
+                if in_slab(points[j], centres[s], directions[s], half):
+                    count += 1
+            out[s] = count
 
 
 @ti.kernel
 def _slab_members(points: Points, centres: Points, directions: Points, half: ti.f64, offsets: Offsets, out: Indices):
     """Rows of these points, ascending, those of slab s from offsets[s] on."""
-    for s in centres:
-        at = offsets[s]
-        for j in range(points.shape[0]):
-            if in_slab(points[j], centres[s], directions[s], half):
-                out[at] = j
-                at += ti.i64(1)
+    bits = spread(centres.shape[0])
+    for number in range(centres.shape[0] << bits):
+        if is_piece(number, bits):
+            s = number >> bits
+            at = offsets[s]
+            for j in range(points.shape[0]):
+                if in_slab(points[j], centres[s], directions[s], half):
+                    out[at] = j
+                    at += ti.i64(1)
 
 
 slab_counts = started(_slab_counts)
