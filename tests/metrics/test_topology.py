@@ -40,7 +40,7 @@ CLOUDS = {
 
 
 @pytest.mark.parametrize("name", CLOUDS)
-def test_delaunay_lengths_give_the_bars_of_the_dense_matrix(name: str) -> None:
+def test_bars_are_those_of_the_dense_matrix(name: str) -> None:
     points = CLOUDS[name]
     # ripser works in single precision, relative to the coordinates
     tolerance = 1e-6 * max(1.0, np.abs(points).max() if name == "far away" else np.ptp(points, axis=0).max())

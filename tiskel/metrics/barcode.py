@@ -1,10 +1,8 @@
-"""Barcodes of the Vietoris-Rips filtration, from Delaunay edges.
+"""Barcodes of points: H0 of the Vietoris-Rips filtration, H1 of the Delaunay-Rips complex.
 
-The deaths in H0 are the edge lengths of the Euclidean minimum spanning tree,
-which lies in the Delaunay graph: its lengths give ripser the same bars as the
-dense matrix does, two hundred times cheaper. In H1 the flag complex of the
-Delaunay graph is the Delaunay-Rips complex (Mishra and Motta 2023), close to
-the Vietoris-Rips complex though not equal to it.
+The deaths in H0 are the edge lengths of the Euclidean minimum spanning tree, in double precision; no triangulation is
+needed for them. In H1 the flag complex of the Delaunay graph is the Delaunay-Rips complex (Mishra and Motta 2023),
+close to the Vietoris-Rips complex though not equal to it.
 """
 
 from dataclasses import dataclass
@@ -16,6 +14,7 @@ from scipy.spatial import Delaunay
 
 from tiskel.arrays import FLATNESS, TINY, Edges, Numbers, Points, Table
 from tiskel.geometry.graph import edge_lengths
+from tiskel.geometry.spanning import spanning_tree
 
 NO_CYCLES: Table = np.zeros((0, 2))
 
@@ -65,27 +64,19 @@ def barcode(points: Points, *, loops: bool = False) -> Barcode:
     >>> barcode(np.array([[0, 0, 0], [1, 0, 0], [4.0, 0, 0]])).deaths.tolist()
     [3.0, 1.0]
     """
-    if len(points) < 2:
-        return Barcode(np.zeros(0), NO_CYCLES)
-    diagrams = _persistence(points, int(loops))
-    finite = np.asarray(diagrams[0][:, 1], np.float64)
-    finite = np.sort(finite[np.isfinite(finite)])[::-1]
-    deaths = np.zeros(len(points) - 1)
-    deaths[: len(finite)] = finite
-    return Barcode(deaths, _by_ratio(np.asarray(diagrams[1], np.float64)) if loops else NO_CYCLES)
+    deaths = spanning_tree(points).lengths[::-1]
+    return Barcode(deaths, _cycles(points) if loops and len(points) > 1 else NO_CYCLES)
 
 
-def _by_ratio(bars: Table) -> Table:
-    return np.asarray(bars[np.argsort(-bars[:, 1] / bars[:, 0], kind="stable")])
-
-
-def _persistence(points: Points, dimension: int) -> list[Table]:
+def _cycles(points: Points) -> Table:
+    """Return births and deaths in H1, by falling ratio."""
     from ripser import ripser
 
     edges = delaunay_edges(points)
     lengths = edge_lengths(points, edges)
     distances = sparse.coo_matrix((lengths, (edges[:, 0], edges[:, 1])), shape=(len(points), len(points)))
-    return list(ripser(distances.tocsr(), maxdim=dimension, distance_matrix=True)["dgms"])
+    bars = np.asarray(ripser(distances.tocsr(), maxdim=1, distance_matrix=True)["dgms"][1], np.float64)
+    return np.asarray(bars[np.argsort(-bars[:, 1] / bars[:, 0], kind="stable")])
 
 
 def delaunay_edges(points: Points) -> Edges:

@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import TINY, Indices, Mask, Numbers, Pairs, Points, diagonal
 from tiskel.geometry.neighbours import nearest_neighbours
+from tiskel.geometry.spanning import shortest_links
 
 # Found by trial on generated trees (tiskel.gallery.trees), N r / L of their twigs from 0.1 to 5.
 NEIGHBOURS = 20  # points, itself included, that a point is linked with: they reach across a ring of so many
@@ -22,7 +23,6 @@ ABOVE = 1 + 1e-7  # factor of the spacing, so that on even wires rounding does n
 CLOSEST = 1e-6  # of the diagonal: the least spacing; what is closer is one place, to the precision of many files
 BRIDGE = 4.0  # spacings: longer links lead over a gap
 WIDEST = 0.2  # widest gap that is crossed, in the extent of the larger piece; patches cut from trees are narrower
-SEARCH = 64  # neighbours of points in small pieces that are searched first for another piece
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,16 +89,15 @@ def _joins(points: Points, graph: sparse.csr_array, spacing: float, least: int) 
 
     Round by round every piece but the largest is joined to the nearest other
     (Boruvka's minimum spanning tree), where the gap is narrow against the larger
-    of the two; where none is, to the nearest that is larger than itself, as two
-    twigs that a gap cut off may be nearest to each other. A small piece further
-    away is no part of the body.
+    of the two; where none is, to the largest, as two twigs that a gap cut off may
+    be nearest to each other. A small piece further away is no part of the body.
     """
     piece = connected_components(graph, directed=False)[1].astype(np.int32)
     joins: set[tuple[int, int]] = set()  # both pieces may find the same
     while piece.max() > 0:
         sizes = np.bincount(piece)
-        for rank in (np.zeros(len(sizes), np.int32), np.argsort(np.argsort(-sizes, kind="stable")).astype(np.int32)):
-            links = _shortest(points, piece, int(sizes.argmax()), rank)
+        for shortest in (_shortest, _to_largest):
+            links = shortest(points, piece, int(sizes.argmax()))
             found = [link for link in links if _narrow(points, piece, link, spacing, least)]
             if found:
                 break
@@ -113,28 +112,20 @@ def _joins(points: Points, graph: sparse.csr_array, spacing: float, least: int) 
     return np.array(sorted(joins), np.int32).reshape(-1, 2), np.asarray(kept)
 
 
-def _shortest(points: Points, piece: Indices, largest: int, rank: Indices) -> list[tuple[float, int, int]]:
-    """Return the shortest link from every piece but the largest to another: its length and its two points.
+def _shortest(points: Points, piece: Indices, largest: int) -> list[tuple[float, int, int]]:
+    """Return the shortest link from every piece but the largest to another: its length and its two points."""
+    links, lengths = shortest_links(points, piece)
+    found = zip(lengths.tolist(), links[:, 0].tolist(), links[:, 1].tolist(), strict=True)
+    return [link for number, link in enumerate(found) if number != largest]
 
-    The other is of a lower rank, or of the same.
-    """
-    tree, rows = cKDTree(points), np.flatnonzero(piece != largest)
-    best: dict[int, tuple[float, int, int]] = {}
-    count = min(SEARCH, len(points))
-    while len(rows):
-        distance, near = tree.query(points[rows], k=count)
-        one = piece[rows][:, None]
-        other = (piece[near] != one) & (rank[piece[near]] <= rank[one])
-        has = other.any(axis=1)
-        nearest = other.argmax(axis=1)
-        for place in np.flatnonzero(has).tolist():
-            row, at = int(rows[place]), int(nearest[place])
-            link = (float(distance[place, at]), row, int(near[place, at]))
-            best[int(piece[row])] = min(best.get(int(piece[row]), link), link)
-        # A piece whose points saw none but their own is larger than the search.
-        rows = rows[~has & ~np.isin(piece[rows], list(best))]
-        count = min(4 * count, len(points))
-    return [best[number] for number in sorted(best)]
+
+def _to_largest(points: Points, piece: Indices, largest: int) -> list[tuple[float, int, int]]:
+    """Return the shortest link from every other piece to the largest: its length and its two points."""
+    rows, home = np.flatnonzero(piece != largest), np.flatnonzero(piece == largest)
+    distance, near = cKDTree(points[home]).query(points[rows])
+    order = np.lexsort((distance, piece[rows]))
+    first = order[np.unique(piece[rows][order], return_index=True)[1]]
+    return list(zip(distance[first].tolist(), rows[first].tolist(), home[near[first]].tolist(), strict=True))
 
 
 def _narrow(points: Points, piece: Indices, link: tuple[float, int, int], spacing: float, least: int) -> bool:
