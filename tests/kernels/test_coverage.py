@@ -6,9 +6,8 @@ from scipy.spatial import cKDTree
 
 from reference.quality import cell_of, covered_cells
 from tiskel.arrays import Points
-from tiskel.geometry.neighbours import morton_curve
 from tiskel.kernels import coverage as kernel
-from tiskel.metrics import boundedness
+from tiskel.metrics import boundedness, hulls
 from tiskel.metrics.centredness import slab_members
 
 AREAS = boundedness.cell_areas(kernel.SIDE)
@@ -29,7 +28,7 @@ def test_cells_of_directions() -> None:
 
 def test_cell_centres_and_areas_belong_to_the_cells() -> None:
     generator = np.random.default_rng(8)
-    centres = boundedness.cell_centres(kernel.SIDE)
+    centres = hulls.cell_centres(kernel.SIDE)
     assert cells(centres).tolist() == list(range(kernel.CELLS))
     assert AREAS.sum() == pytest.approx(1, abs=1e-12)
     directions = generator.normal(size=(200_000, 3))
@@ -44,7 +43,7 @@ def test_touching_cells_are_all_there() -> None:
     directions = generator.normal(size=(5000, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     aside = directions + 0.05 * generator.uniform(-1, 1, size=directions.shape) / np.sqrt(3)
-    table = boundedness.touching_cells()
+    table = hulls.touching_cells()
     assert all(b in table[a] for a, b in zip(cells(directions), cells(aside), strict=True))
 
 
@@ -53,8 +52,9 @@ def test_coverage_counts_each_cell_once() -> None:
     cloud = generator.normal(size=(60, 3))
     places = np.concatenate([generator.normal(size=(20, 3)) * 0.5, cloud[:2]])
     spacing = cKDTree(cloud).query(cloud, boundedness.DISC_NEIGHBOURS)[0].mean(axis=1)
-    curve = morton_curve(cloud)
-    seen = boundedness.coverage(places, curve, spacing[curve.order])
+    view = boundedness.view_of(cloud)
+    np.testing.assert_array_equal(view.spacing, spacing[view.curve.order])
+    seen = boundedness.coverage(places, view)
     for place, share in zip(places, seen.shares, strict=True):
         expected = AREAS[sorted(covered_cells(place, cloud, spacing, kernel.SIDE))].sum()
         assert share == pytest.approx(expected, abs=1e-12) or (share >= boundedness.ENOUGH and share <= expected)

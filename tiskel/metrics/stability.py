@@ -20,7 +20,7 @@ from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
-from tiskel.metrics.boundedness import outside_hull
+from tiskel.metrics.hulls import outside_hull
 from tiskel.params import StabilityParams
 
 UNIFORM_UP_TO = 0.5  # of D on a curve: a right angle
