@@ -17,6 +17,7 @@ from tiskel.metrics import smoothness
 from tiskel.metrics.barcode import Barcode, barcode
 from tiskel.metrics.boundedness import Boundedness, boundedness
 from tiskel.metrics.centredness import curve_centredness, point_centredness
+from tiskel.metrics.loop_points import loop_rows
 from tiskel.metrics.loops import Loops, count_loops
 from tiskel.metrics.medialness import medialness_at
 from tiskel.metrics.places import CurveQuality, PointQuality
@@ -129,13 +130,11 @@ def _topology_and_loops(
 
 
 def _loop_part(subject: Subject, surface: OrientedCloud, params: MetricParams) -> OrientedCloud:
-    """Return the surface, or that of a random subset of a large cloud."""
-    if len(subject.cloud) <= params.loop_points:
+    """Return the surface, or that of a random subset of a large cloud, or of even points on wires."""
+    rows = loop_rows(subject.cloud, params)
+    if len(rows) == len(subject.cloud):
         return surface
-    rows = np.random.default_rng(params.seed).choice(len(subject.cloud), params.loop_points, replace=False)
-    rows.sort()
-    thinned = np.ascontiguousarray(subject.cloud[rows])
-    return oriented_cloud(thinned, subject.targets[rows], params.seed)
+    return oriented_cloud(np.ascontiguousarray(subject.cloud[rows]), subject.targets[rows], params.seed)
 
 
 def _topology(subject: Subject, known: Points, bars: Barcode, params: MetricParams) -> Topology | None:
