@@ -12,6 +12,7 @@ from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.params import MetricParams
 
 FEWEST = 3  # points that make a section
+BLOCK = 16384  # points at a time, so that the neighbours of each fit into memory
 
 
 def neighbourhood_size(count: int) -> int:
@@ -52,7 +53,9 @@ def point_centredness(points: Points, originals: Points) -> Numbers:
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
     """
     near = nearest_neighbours(points, neighbourhood_size(len(points)))[0]
-    apart = np.linalg.norm((originals[near] - points[near]).mean(axis=1), axis=1)
+    apart = np.empty(len(points))
+    for rows in np.array_split(np.arange(len(points)), -(-len(points) // BLOCK) or 1):
+        apart[rows] = np.linalg.norm((originals[near[rows]] - points[near[rows]]).mean(axis=1), axis=1)
     moved = np.linalg.norm(originals - points, axis=1)[near].mean(axis=1)
     ratio = np.divide(apart, moved, out=np.zeros(len(points)), where=moved > 0)
     return np.asarray(np.maximum(0, 1 - ratio))
