@@ -5,6 +5,8 @@ the diagonal. On a line, matched bars need not cross, and that makes both exact
 distances cheap.
 """
 
+from heapq import heappop, heappush
+
 import numpy as np
 
 from tiskel.arrays import Numbers
@@ -58,10 +60,10 @@ def bottleneck(a: Numbers, b: Numbers, *, diagonal: bool = True) -> float:
 def wasserstein(a: Numbers, b: Numbers, *, diagonal: bool = True) -> float:
     """Return the 1-Wasserstein distance of two H0 barcodes, the sum over the best matching.
 
-    Alignment of two sorted lists by dynamic programming: the cheapest way to
-    treat the first i and the first j bars is D[i, j], the least of
-    D[i-1, j] + a_i / 2, D[i, j-1] + b_j / 2 and D[i-1, j-1] + |a_i - b_j|. The
-    second, which depends on its own row, is a running minimum.
+    By its dual: of a function f whose slope is at most 1 and that is at most
+    half of x at x, the largest sum over a less that over b. Along the sorted
+    bars the best sum as a function of f is concave with integer slopes, so that
+    two heaps of the places where these change are all there is to know.
 
     Parameters
     ----------
@@ -92,13 +94,31 @@ def wasserstein(a: Numbers, b: Numbers, *, diagonal: bool = True) -> float:
     a, b = _padded(a, b, diagonal)
     if not diagonal:
         return float(np.abs(a - b).sum())
-    alone = np.append(0.0, np.cumsum(b / 2))
-    best = alone
-    for bar in a:
-        least = best + bar / 2
-        least[1:] = np.minimum(least[1:], best[:-1] + np.abs(bar - b))
-        best = np.minimum.accumulate(least - alone) + alone
-    return float(best[-1])
+    places = np.concatenate([a, b])
+    order = np.argsort(places, kind="stable")
+    return _largest_sum(places[order].tolist(), (order < len(a)).tolist())
+
+
+def _largest_sum(places: list[float], gains: list[bool]) -> float:
+    """Return the largest sum of f at the places that are gains, less that at the others; places ascending.
+
+    From place to place what rises moves down by their distance and what falls
+    moves up by it, since f may change by so much; a gain makes the first fall
+    a rise.
+    """
+    rises: list[float] = []  # where slopes above 0 end: negative, the place added
+    falls: list[float] = []  # where slopes below 0 begin, less the place
+    total = 0.0
+    for x, gain in zip(places, gains, strict=True):
+        if gain:
+            f = min(heappop(falls) + x, x / 2) if falls else x / 2
+            total += f
+            heappush(rises, -(f + x))
+        else:
+            f = max(-heappop(rises) - x, -x / 2) if rises else -x / 2
+            total -= f
+            heappush(falls, f - x)
+    return total
 
 
 def _padded(a: Numbers, b: Numbers, diagonal: bool) -> tuple[Numbers, Numbers]:
