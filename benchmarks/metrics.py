@@ -147,17 +147,23 @@ def main() -> None:
     chosen = parser.parse_args()
     small = many(chosen.clouds) if chosen.clouds else ""
     print(small)
-    rows, yardstick = [], shape("hammer", YARDSTICK)
+    rows: list[dict[str, object]] = []
+    yardstick = shape("hammer", YARDSTICK)
     for name, points in subjects(chosen.counts):
         rows.append(compare(name, points, yardstick))
         print(", ".join(f"{key} {value}" for key, value in rows[-1].items()), flush=True)
-    if chosen.write:
-        OUT.mkdir(exist_ok=True)
-        with (OUT / "metrics.csv").open("w", newline="") as file:
-            table = csv.DictWriter(file, COLUMNS)
-            table.writeheader()
-            table.writerows(rows)
-        (OUT / "metrics.md").write_text(page(rows, small))
+        if chosen.write:
+            write(rows, small)
+
+
+def write(rows: list[dict[str, object]], small: str) -> None:
+    """Write the table as it is so far."""
+    OUT.mkdir(exist_ok=True)
+    with (OUT / "metrics.csv").open("w", newline="") as file:
+        table = csv.DictWriter(file, COLUMNS)
+        table.writeheader()
+        table.writerows(rows)
+    (OUT / "metrics.md").write_text(page(rows, small))
 
 
 if __name__ == "__main__":
