@@ -10,6 +10,7 @@ import typer
 from tiskel.cli import console
 from tiskel.cli import options as o
 from tiskel.cli.common import common
+from tiskel.cli.progress import reading, shown
 
 if TYPE_CHECKING:
     from tiskel.geometry.graph import CurveGraph
@@ -28,7 +29,8 @@ def compare(first: First, second: Second, as_json: o.AsJson = False) -> None:
     from tiskel.metrics.repeatability import repeatability
 
     facts: dict[str, Any] = {"files": [first.name, second.name]}
-    facts |= repeatability(_curve(first), _curve(second)).as_dict()
+    with shown(reading(first, second)):
+        facts |= repeatability(_curve(first), _curve(second)).as_dict()
     if as_json or not sys.stdout.isatty():
         typer.echo(json.dumps(facts, allow_nan=False))
         return

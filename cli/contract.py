@@ -7,6 +7,7 @@ from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common, contracts, reads_cloud
+from tiskel.cli.progress import reading, shown
 
 
 @common
@@ -33,11 +34,12 @@ def contract(
     from tiskel.geometry.mesh_surface import still_on
     from tiskel.io.stages.contraction import dump_contraction
 
-    cloud = stages.read_cloud(source, conditioning_params)
-    points, report = condition(cloud.points, conditioning_params)
-    console.tell(messages.said(report))
-    surface = still_on(cloud.surface, points, cloud.points)
-    contraction = contract_cloud(points, params, stages.weights_of(cloud, weights), surface)
+    with shown(reading(source)) as progress:
+        cloud = stages.read_cloud(source, conditioning_params)
+        points, report = condition(cloud.points, conditioning_params)
+        console.tell(messages.said(report))
+        surface, weighted = still_on(cloud.surface, points, cloud.points), stages.weights_of(cloud, weights)
+        contraction = contract_cloud(points, params, weighted, surface, progress=progress)
     stages.tell_contraction(contraction)
     target = stages.output_path(output, source, "contraction.ply")
     stages.write(target, lambda: dump_contraction(contraction, cloud.source, history=history))

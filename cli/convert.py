@@ -9,6 +9,7 @@ from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
+from tiskel.cli.progress import reading, shown
 
 Target = Annotated[Path, typer.Argument(metavar="OUT", help="A file; its suffix names the format.", show_default=False)]
 
@@ -27,12 +28,13 @@ def convert(source: o.Source, target: Target, sample: o.Sample = o.SAMPLE, seed:
     from tiskel.io.streams import read_bytes
 
     suffix = target.suffix.lower().removeprefix(".")
-    data = read_bytes(source)
-    if suffix in EXPORTS and stage_of(data) == "skeleton":
-        skeleton = parse_skeleton(data, str(source))
-        stages.write(target, lambda: EXPORTS[suffix](skeleton))
-        return
-    cloud = parse_cloud(data, source, mesh_samples=stages.sample_of(sample), seed=seed)
-    console.warn(cloud.warnings)
-    console.tell(messages.said(cloud.notes))
-    stages.write(target, lambda: dump_cloud(cloud.points, target))
+    with shown(reading(source)):
+        data = read_bytes(source)
+        if suffix in EXPORTS and stage_of(data) == "skeleton":
+            skeleton = parse_skeleton(data, str(source))
+            stages.write(target, lambda: EXPORTS[suffix](skeleton))
+            return
+        cloud = parse_cloud(data, source, mesh_samples=stages.sample_of(sample), seed=seed)
+        console.warn(cloud.warnings)
+        console.tell(messages.said(cloud.notes))
+        stages.write(target, lambda: dump_cloud(cloud.points, target))

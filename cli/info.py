@@ -9,6 +9,7 @@ import typer
 from tiskel.cli import console
 from tiskel.cli import options as o
 from tiskel.cli.common import common
+from tiskel.cli.progress import reading, shown
 
 if TYPE_CHECKING:
     from tiskel.arrays import Points
@@ -20,7 +21,8 @@ def info(source: o.Source, as_json: o.AsJson = False) -> None:
 
     A table on a terminal, JSON otherwise: `tiskel info curve.ply | jq .skeleton.ends`
     """
-    facts = _facts(source)
+    with shown(reading(source)):
+        facts = _facts(source)
     if as_json or not sys.stdout.isatty():
         typer.echo(json.dumps(facts, allow_nan=False))
         return

@@ -10,6 +10,7 @@ import typer
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
+from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
 from tiskel.params import Bars, MetricParams, Normalisation
 
@@ -123,8 +124,9 @@ def _measure(
     from tiskel import evaluate
     from tiskel.io.measurable import gather
 
-    m = gather(source, cloud, points, curve)
-    quality = evaluate(m.cloud, m.points, m.nodes, m.edges, origin=m.origin, params=params)
+    with shown(reading(source, cloud, points, curve)) as progress:
+        m = gather(source, cloud, points, curve)
+        quality = evaluate(m.cloud, m.points, m.nodes, m.edges, origin=m.origin, params=params, progress=progress)
     console.warn(tuple(f"{m.name}: {line}" for line in quality.warnings))
     if quality.correspondence == "nearest":
         console.say(f"{m.name}: no correspondence; the nearest points of the cloud stand in for the originals")

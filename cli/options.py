@@ -32,7 +32,9 @@ Threads = Annotated[
         rich_help_panel="Common",
     ),
 ]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No messages.", rich_help_panel="Common")]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="No messages and no progress line.", rich_help_panel="Common")
+]
 Verbose = Annotated[
     bool, typer.Option("--verbose", "-v", help="More messages, and tracebacks.", rich_help_panel="Common")
 ]

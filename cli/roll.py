@@ -11,6 +11,7 @@ from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
 from tiskel.cli.common import common
+from tiskel.cli.progress import reading, shown
 
 if TYPE_CHECKING:
     from tiskel.rolling.trajectory import Trajectory
@@ -67,8 +68,9 @@ def roll(
     from tiskel.io.stages.roll import to_csv
     from tiskel.io.stages.surface import read_surfaces
 
-    surface = read_surfaces(source).named(branch)
-    runs = [run(surface, params, given) for params in settings]
+    with shown(reading(source)) as progress:
+        surface = read_surfaces(source).named(branch)
+        runs = [run(surface, params, given, progress=progress) for params in settings]
     console.tell(messages.of_runs(runs))
     if plot is not None:
         from tiskel.pictures.canvas import picture_kind

@@ -13,6 +13,7 @@ from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
 from tiskel.cli.common import common, contracts, curves, reads_cloud, rolls
+from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
 from tiskel.params import PipelineParams, SkeletonParams, SurfaceParams
 
@@ -56,16 +57,20 @@ def run(
     )
     _make_folder(output)
     start = time.perf_counter()
-    cloud = stages.read_cloud(source, params.conditioning)
-    read = time.perf_counter()
-    from tiskel import run_pipeline
-    from tiskel.cli.run_files import files_of, pictures_of
-
     parts: list[Finished] = []
-    weighted = stages.weights_of(cloud, weights)
-    result = run_pipeline(cloud.points, params, weighted, lambda done: _tell(done, parts), cloud.surface)
+    with shown(reading(source)) as progress:
+        cloud = stages.read_cloud(source, params.conditioning)
+        read = time.perf_counter()
+        from tiskel import run_pipeline
+        from tiskel.cli.run_files import files_of, pictures_of
+
+        weighted = stages.weights_of(cloud, weights)
+        result = run_pipeline(
+            cloud.points, params, weighted, lambda done: _tell(done, parts), cloud.surface, progress=progress
+        )
     drawing = time.perf_counter()
-    pictures = pictures_of(result, cloud)
+    with shown("pictures"):
+        pictures = pictures_of(result, cloud)
     seconds = {"read": read - start, **result.seconds, "pictures": time.perf_counter() - drawing}
     files = files_of(result, cloud, history=history) | pictures
     files["timings.json"] = (json.dumps(seconds, indent=1) + "\n").encode

@@ -8,6 +8,7 @@ import typer
 from tiskel.cli import options as o
 from tiskel.cli import stages
 from tiskel.cli.common import common
+from tiskel.cli.progress import shown
 from tiskel.cli.skeleton import format_of
 from tiskel.params import ShapeParams
 
@@ -84,7 +85,8 @@ def shape(
         sensor_noise=sensor_noise,
         table=table,
     )
-    points, truth = make_shape(named_shape(name), params)
+    with shown("sampling"):
+        points, truth = make_shape(named_shape(name), params)
     target = stages.output_path(output, Path(name), "ply")
     stages.write(target, lambda: dump_cloud(points, target))
     if skeleton is not None:

@@ -10,6 +10,7 @@ from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common, curves
+from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
 from tiskel.params import SkeletonParams
 
@@ -55,8 +56,9 @@ def skeleton(
     target = stages.output_path(output, source, f"skeleton.{chosen}")
     if as_json and str(target) == "-":
         raise TiskelError("--json and the skeleton would both go to standard output; name a file for it with -o")
-    data = read_bytes(source)
-    made = extract_skeleton(parse_contraction(data, str(source)), params)
+    with shown(reading(source)) as progress:
+        data = read_bytes(source)
+        made = extract_skeleton(parse_contraction(data, str(source)), params, progress=progress)
     console.tell(messages.of_skeleton(made))
     if chosen == "ply":
         stages.write(target, lambda: dump_skeleton(made, source_of(data, "contraction", str(source))))

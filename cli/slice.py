@@ -10,10 +10,12 @@ from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
 from tiskel.cli.common import common
+from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
 
 if TYPE_CHECKING:
     from tiskel.params import SurfaceParams
+    from tiskel.progress import Report
     from tiskel.slicing.fitted import Surfaces
 
 CurveFile = Annotated[
@@ -70,7 +72,8 @@ def slice_command(
     `tiskel skeleton c.ply | tiskel slice - --mesh tube.ply | tiskel roll - > path.csv`
     """
     params = so.surface_params(branch, interval, m, order_rule, no_recentre)
-    surfaces, origin = _fitted(source, curve, params)
+    with shown(reading(source, curve)) as progress:
+        surfaces, origin = _fitted(source, curve, params, progress)
     console.tell(messages.of_surfaces(surfaces))
     from tiskel.io.mesh_file import dump_mesh
     from tiskel.io.stages.surface import dump_surfaces
@@ -89,7 +92,9 @@ def slice_command(
     stages.write(target, lambda: dump_surfaces(surfaces, params, origin))
 
 
-def _fitted(source: Path, curve: Path | None, params: "SurfaceParams") -> "tuple[Surfaces, dict[str, str]]":
+def _fitted(
+    source: Path, curve: Path | None, params: "SurfaceParams", progress: "Report | None"
+) -> "tuple[Surfaces, dict[str, str]]":
     """Return the surfaces of a skeleton, or of a curve in a cloud, and what they were made from."""
     from tiskel import fit_surface, load_cloud
     from tiskel.io.curves import load_curve
@@ -99,12 +104,13 @@ def _fitted(source: Path, curve: Path | None, params: "SurfaceParams") -> "tuple
 
     if curve is None:
         data = read_bytes(source)
-        return fit_surface(parse_skeleton(data, str(source)), params), source_of(data, "skeleton", str(source))
+        surfaces = fit_surface(parse_skeleton(data, str(source)), params, progress=progress)
+        return surfaces, source_of(data, "skeleton", str(source))
     if str(source) == "-" == str(curve):
         raise TiskelError("the cloud and --curve cannot both come from standard input; name a file for one of them")
     cloud = load_cloud(source)
     console.warn(cloud.warnings)
-    return fit_surface(load_curve(curve), params, cloud.points), cloud.source
+    return fit_surface(load_curve(curve), params, cloud.points, progress=progress), cloud.source
 
 
 def slices_csv(surfaces: "Surfaces") -> bytes:

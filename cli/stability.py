@@ -10,6 +10,7 @@ from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
+from tiskel.cli.progress import reading, shown
 
 if TYPE_CHECKING:
     from tiskel.metrics.stability import Stability
@@ -25,8 +26,9 @@ def stability(source: o.Source, as_json: o.AsJson = False, plot: o.Plot = None) 
     from tiskel import assess_stability
     from tiskel.io.stages.contraction import read_contraction
 
-    contraction = read_contraction(source)
-    result = assess_stability(contraction)
+    with shown(reading(source)) as progress:
+        contraction = read_contraction(source)
+        result = assess_stability(contraction, progress=progress)
     if plot is not None:
         from tiskel.pictures.canvas import picture_kind
         from tiskel.pictures.stability import stability_picture

@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from tiskel.pipeline import PipelineResult as PipelineResult
     from tiskel.pipeline import run_pipeline as run_pipeline
     from tiskel.preprocess.conditioning import condition as condition
+    from tiskel.progress import Progress as Progress
     from tiskel.rolling.bodies import BodyTrajectory as BodyTrajectory
     from tiskel.rolling.bodies import roll_body as roll_body
     from tiskel.rolling.inputs import Inputs as Inputs
@@ -83,6 +84,7 @@ _HOME = {
     "MetricParams": "params",
     "PipelineParams": "params",
     "PipelineResult": "pipeline",
+    "Progress": "progress",
     "Quality": "metrics.result",
     "RadiusSource": "geometry.radius",
     "Regime": "geometry.regime",

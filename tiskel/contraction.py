@@ -27,6 +27,7 @@ from tiskel.geometry.strays import stray_points
 from tiskel.methods import METHODS
 from tiskel.methods.trace import Sections, Status, StepRecord, Trace, survivors
 from tiskel.params import ContractionParams, RobustParams
+from tiskel.progress import Report, Span
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +136,7 @@ class Contraction:
 
 def contract(
     points: npt.ArrayLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None,
-    surface: MeshSurface | None = None,
+    surface: MeshSurface | None = None, *, progress: Report | None = None,
 ) -> Contraction:  # fmt: skip
     """Contract a cloud towards its medial curve.
 
@@ -155,6 +156,7 @@ def contract(
         evens that out (S-LBC, Meyer et al. 2023).
     surface : what is known of the mesh that the points lie on, a row for each, see
         :class:`tiskel.geometry.mesh_surface.MeshSurface`; ``load_cloud`` gives it. Only robust uses it.
+    progress : called with a :class:`tiskel.Progress` as parts begin; what it raises ends the contraction.
 
     Returns
     -------
@@ -175,7 +177,8 @@ def contract(
     >>> len(contract(cloud, GlsParams(max_steps=2)).points) < len(cloud)
     True
     """
-    params = params or RobustParams()
+    params, span = params or RobustParams(), Span(progress, "contract")
+    span.at(0, "cloud")
     every = as_points(points)
     finite = finite_rows(every)
     cloud, input_rows = np.ascontiguousarray(every[finite]), np.flatnonzero(finite).astype(np.int32)
@@ -189,14 +192,17 @@ def contract(
     chosen = None if weights is None else as_weights(weights, len(every))[finite][distinct]
     known = None if surface is None else surface.checked(len(every)).at(input_rows[distinct])
     scaled = known and known.scaled(frame.scale)
-    trace = METHODS[params.method].contract(frame.apply(cloud[distinct]), params.placed(frame.place), chosen, scaled)
+    placed, body = params.placed(frame.place), frame.apply(cloud[distinct])
+    trace = METHODS[params.method].contract(body, placed, chosen, scaled, span)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
     warnings = _warnings(len(every) - len(cloud), int((~stray).sum()) - len(distinct), trace.status)
     if stray.any():
         first[stray] = distinct[cKDTree(cloud[distinct]).query(cloud[stray])[1]]
     trace = replace(trace, surface=known if trace.sections is not None else None)
-    return _assembled(trace, frame, cloud, input_rows, first, distinct, warnings, params)
+    made = _assembled(trace, frame, cloud, input_rows, first, distinct, warnings, params)
+    span.at(1)
+    return made
 
 
 def _warnings(dropped: int, duplicates: int, status: Status) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from tiskel.metrics.result import Quality
 from tiskel.metrics.stability import Stability, assess_stability
 from tiskel.params import PipelineParams
 from tiskel.preprocess.conditioning import condition
+from tiskel.progress import Report
 from tiskel.rolling.roll import roll
 from tiskel.rolling.trajectory import Trajectory
 from tiskel.skeleton import Skeleton, extract_skeleton
@@ -138,6 +139,7 @@ def run_pipeline(
     weights: npt.ArrayLike | None = None,
     observer: Observer = lambda finished: None,
     surface: MeshSurface | None = None,
+    progress: Report | None = None,
 ) -> PipelineResult:
     """Do everything with one cloud: condition, contract, skeleton, measures, stability, surfaces, rolling.
 
@@ -156,6 +158,8 @@ def run_pipeline(
         Called after each part with a :class:`tiskel.pipeline.Finished`. What it raises ends the run.
     surface : MeshSurface, optional
         See :func:`tiskel.contract`; left out where conditioning changes the points.
+    progress : callable, optional
+        Called with a :class:`tiskel.Progress` as parts of the stages begin; every stage goes from 0 to 1.
 
     Returns
     -------
@@ -185,13 +189,15 @@ def run_pipeline(
     )
     c = record.do(
         "contract",
-        lambda: contract(ready, chosen.contraction, weights, still_on(surface, ready, points)),
+        lambda: contract(ready, chosen.contraction, weights, still_on(surface, ready, points), progress=progress),
         messages.of_contraction,
     )
-    s = record.do("skeleton", lambda: extract_skeleton(c, chosen.skeleton), messages.of_skeleton)
-    quality = record.do("metrics", lambda: evaluate(s, params=chosen.metrics), lambda _: ())
-    stability = record.do("stability", lambda: assess_stability(c, chosen.stability), messages.of_stability)
-    surfaces, trajectories, reason = _surfaces_and_runs(s, chosen, record)
+    s = record.do("skeleton", lambda: extract_skeleton(c, chosen.skeleton, progress=progress), messages.of_skeleton)
+    quality = record.do("metrics", lambda: evaluate(s, params=chosen.metrics, progress=progress), lambda _: ())
+    stability = record.do(
+        "stability", lambda: assess_stability(c, chosen.stability, progress=progress), messages.of_stability
+    )
+    surfaces, trajectories, reason = _surfaces_and_runs(s, chosen, record, progress)
     return PipelineResult(
         points=ready,
         contraction=c,
@@ -208,14 +214,18 @@ def run_pipeline(
 
 
 def _surfaces_and_runs(
-    skeleton: Skeleton, params: PipelineParams, record: _Record
+    skeleton: Skeleton, params: PipelineParams, record: _Record, progress: Report | None
 ) -> tuple[Surfaces | None, tuple[Trajectory, ...], str]:
     """Fit surfaces and roll over the longest; where that is impossible, return the reason and what there is."""
-    surfaces, reason = record.attempt("surface", lambda: fit_surface(skeleton, params.surface), messages.of_surfaces)
+    surfaces, reason = record.attempt(
+        "surface", lambda: fit_surface(skeleton, params.surface, progress=progress), messages.of_surfaces
+    )
     if surfaces is None:
         return None, (), reason
     longest = surfaces.named(None)
-    runs, reason = record.attempt("roll", lambda: tuple(roll(longest, r) for r in params.roll), messages.of_runs)
+    runs, reason = record.attempt(
+        "roll", lambda: tuple(roll(longest, r, progress=progress) for r in params.roll), messages.of_runs
+    )
     return surfaces, runs or (), reason
 
 

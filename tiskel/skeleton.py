@@ -18,6 +18,7 @@ from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 from tiskel.methods import METHODS
 from tiskel.params import ContractionParams, SkeletonParams
+from tiskel.progress import Report, Span
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,7 +104,9 @@ class Skeleton(CurveGraph):
         return network
 
 
-def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = None) -> Skeleton:
+def extract_skeleton(
+    contraction: Contraction, params: SkeletonParams | None = None, *, progress: Report | None = None
+) -> Skeleton:
     """Turn a contracted cloud into a curve skeleton, by the method that contracted it.
 
     Method robust fits a curve of round cones to the original cloud along the
@@ -118,6 +121,8 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
         A contracted cloud.
     params : SkeletonParams, optional
         What is to differ from the settings that the contraction was made with.
+    progress : callable, optional
+        Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the extraction.
 
     Returns
     -------
@@ -136,18 +141,20 @@ def extract_skeleton(contraction: Contraction, params: SkeletonParams | None = N
     >>> skeleton.components, skeleton.loops, skeleton.ends
     (1, 0, 3)
     """
-    c = contraction
+    c, span = contraction, Span(progress, "skeleton")
+    span.at(0, "cloud")
     if len(c.points) == 0:
         raise TiskelError("the contraction holds no point; run tiskel contract again")
     settings = (params or SkeletonParams()).over(c.params)
     trace, frame = c.as_trace()
-    made = METHODS[settings.method].curve(trace, settings.placed(frame.place))
+    made = METHODS[settings.method].curve(trace, settings.placed(frame.place), span)
     doubts = [doubt.moved(frame.undo) for doubt in made.warnings]
     body = np.flatnonzero(~c.strays)
     node_of_point = np.full(len(c.cloud), -1, np.int32)
     node_of_point[body] = made.node_of_point
     others = np.flatnonzero(c.strays)
     node_of_point[others] = node_of_point[c.merged_into[others]]
+    span.at(1)
     return Skeleton(
         nodes=frame.undo(made.graph.nodes),
         edges=made.graph.edges,

@@ -1,12 +1,17 @@
 """Wall time by part; measured times never reach a result file."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 
 class Stopwatch:
     """Collect wall time by part.
+
+    Parameters
+    ----------
+    began : callable, optional
+        Called with the name of every part as it begins.
 
     Attributes
     ----------
@@ -23,12 +28,14 @@ class Stopwatch:
     ['solve']
     """
 
-    def __init__(self) -> None:
+    def __init__(self, began: Callable[[str], None] = lambda part: None) -> None:
+        self.began = began
         self.seconds: dict[str, float] = {}
 
     @contextmanager
     def measure(self, part: str) -> Iterator[None]:
         """Add the time of a block to a part, of one that fails too."""
+        self.began(part)
         start = time.perf_counter()
         try:
             yield

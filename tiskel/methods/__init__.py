@@ -1,9 +1,9 @@
 """Methods: ways from a cloud to a curve skeleton, each behind the same two functions.
 
-``contract(points, params, weights, surface) -> Trace`` and ``curve(trace, params) ->
-MethodCurve``, both in normalised coordinates; checks and units are the two
-stages' (:mod:`tiskel.contraction`, :mod:`tiskel.skeleton`). What a method does
-not read, its settings do not have.
+``contract(points, params, weights, surface, span) -> Trace`` and ``curve(trace,
+params, span) -> MethodCurve``, both in normalised coordinates; checks and units are
+the two stages' (:mod:`tiskel.contraction`, :mod:`tiskel.skeleton`). What a method
+does not read, its settings do not have; the span is told how far it is.
 """
 
 from collections.abc import Callable
@@ -18,6 +18,7 @@ from tiskel.methods.laplacian.gls import contract_gls
 from tiskel.methods.laplacian.lbc import contract_lbc
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import GlsParams, LbcParams
+from tiskel.progress import Span
 
 
 @dataclass(frozen=True)
@@ -28,23 +29,27 @@ class Method:
     ----------
     contract : callable
         Points (n, 3), the method's params, weights (n,) or None, and what is known of the mesh that the points lie on
-        or None, to a Trace.
+        or None, and the span that the contraction is, to a Trace.
     curve : callable
-        A Trace and the method's params, to a MethodCurve.
+        A Trace, the method's params, and the span that the extraction is, to a MethodCurve.
     """
 
-    contract: Callable[[Points, Any, Numbers | None, MeshSurface | None], Trace]
-    curve: Callable[[Trace, Any], MethodCurve]
+    contract: Callable[[Points, Any, Numbers | None, MeshSurface | None, Span], Trace]
+    curve: Callable[[Trace, Any, Span], MethodCurve]
 
 
-def _gls(points: Points, params: GlsParams, weights: Numbers | None, surface: MeshSurface | None) -> Trace:
+def _gls(
+    points: Points, params: GlsParams, weights: Numbers | None, surface: MeshSurface | None, span: Span
+) -> Trace:  # fmt: skip
     """Contract as published: a mesh is points to it."""
-    return contract_gls(points, params, weights)
+    return contract_gls(points, params, weights, span)
 
 
-def _lbc(points: Points, params: LbcParams, weights: Numbers | None, surface: MeshSurface | None) -> Trace:
+def _lbc(
+    points: Points, params: LbcParams, weights: Numbers | None, surface: MeshSurface | None, span: Span
+) -> Trace:  # fmt: skip
     """Contract as published: a mesh is points to it."""
-    return contract_lbc(points, params, weights)
+    return contract_lbc(points, params, weights, span)
 
 
 METHODS: dict[str, Method] = {

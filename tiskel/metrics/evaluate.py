@@ -25,8 +25,11 @@ from tiskel.metrics.result import Quality
 from tiskel.metrics.subject import Subject, make_subject
 from tiskel.metrics.topology import Topology, compare_topology
 from tiskel.params import MetricParams
+from tiskel.progress import Report, Span
 from tiskel.skeleton import Skeleton
 from tiskel.timing import Stopwatch
+
+PARTS = 11  # that a skeleton with points and a curve is measured in; for who waits only
 
 
 def evaluate(
@@ -37,6 +40,7 @@ def evaluate(
     *,
     origin: npt.ArrayLike | None = None,
     params: MetricParams | None = None,
+    progress: Report | None = None,
 ) -> Quality:
     """Measure skeletal points and a curve against the cloud they stand for.
 
@@ -63,6 +67,8 @@ def evaluate(
         many, else to the nearest point of the cloud; the result says which.
     params : MetricParams, optional
         The settings.
+    progress : callable, optional
+        Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the measuring.
 
     Returns
     -------
@@ -94,11 +100,12 @@ def evaluate(
         cloud, points, origin = s.cloud, s.contracted if some else None, s.origin if some else None
         nodes, edges = s.nodes, s.edges
     subject = make_subject(cloud, points, nodes, edges, origin, params.normalise)
-    watch = Stopwatch()
+    watch = Stopwatch(began=(span := Span(progress, "metrics")).parts(PARTS))
     with watch.measure("inside"):
         surface = oriented_cloud(subject.cloud, subject.targets, params.seed)
     topology, loops = _topology_and_loops(subject, surface, params, watch)
     of_points, of_curve = _measures(subject, surface, params, watch)
+    span.at(1)
     return Quality(
         topology=topology,
         loops=loops,

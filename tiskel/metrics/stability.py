@@ -22,6 +22,7 @@ from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
 from tiskel.metrics.hulls import outside_hull
 from tiskel.params import StabilityParams
+from tiskel.progress import Report, Span
 
 UNIFORM_UP_TO = 0.5  # of D on a curve: a right angle
 BEYOND = 0.12  # share of angles over a right one that is named as the reason
@@ -121,7 +122,9 @@ def _plain(step: StepStability) -> dict[str, Any]:
     return {key: value for key, value in asdict(step).items() if key not in ("angles", "curvatures")}
 
 
-def assess_stability(contraction: Contraction, params: StabilityParams | None = None) -> Stability:
+def assess_stability(
+    contraction: Contraction, params: StabilityParams | None = None, *, progress: Report | None = None
+) -> Stability:
     """Judge the steps of a contraction by how normals and curvatures change.
 
     Only points that survive all steps count; both normals of a point are oriented away from its final position.
@@ -130,6 +133,7 @@ def assess_stability(contraction: Contraction, params: StabilityParams | None = 
     ----------
     contraction : Contraction, with its history.
     params : StabilityParams, optional; the settings.
+    progress : callable, optional; called with a :class:`tiskel.Progress` as parts begin.
 
     Raises
     ------
@@ -142,23 +146,24 @@ def assess_stability(contraction: Contraction, params: StabilityParams | None = 
     True
     """
     params = params or StabilityParams()
-    c = contraction
+    c, span = contraction, Span(progress, "stability")
+    span.at(0, "normals")
     if len(c.history) == 0 and len(c.steps):
         raise TiskelError("the contraction file holds no history; write it with: tiskel contract --history")
     if len(c.history) == 0 or len(c.points) == 0:
         raise TiskelError(f"the contraction kept {len(c.history)} steps; there is nothing to compare")
-    surface = oriented_cloud(*_surface_arguments(c))
-    outward = c.origin - c.points
+    surface, outward = oriented_cloud(*_surface_arguments(c)), c.origin - c.points
     normals, curvature = oriented_normals(c.origin, outward, params.neighbours)
     signs = np.random.default_rng(params.seed).integers(2, size=len(c.origin))
     before, steps = c.origin, []
-    for positions in c.history:
+    for number, positions in enumerate(c.history, 1):
+        span.at(number / (len(c.history) + 1), f"step {number}")
         turned, bent = oriented_normals(positions, outward, params.neighbours)
-        cosine = np.einsum("ij,ij->i", normals, turned)
-        angles = np.arccos(np.clip(cosine, -1, 1)) / np.pi
+        angles = np.arccos(np.clip(np.einsum("ij,ij->i", normals, turned), -1, 1)) / np.pi
         places = _containment(positions, before, surface)
         steps.append(_judged(angles, bent - curvature, np.where(signs, angles, 1 - angles), places, params))
         before = positions
+    span.at(1)
     return Stability(tuple(steps), len(c.origin), params)
 
 
@@ -170,12 +175,10 @@ def _surface_arguments(c: Contraction) -> tuple[Points, Points]:
 
 def oriented_normals(points: Points, outward: Points, neighbours: int) -> tuple[Points, Numbers]:
     """Return normals (m, 3) on the side of outward (m, 3), and curvatures (m,): smallest eigenvalue over their sum."""
-    points = np.ascontiguousarray(points)
-    near = nearest_neighbours(points, min(neighbours, len(points)))[0]
+    near = nearest_neighbours(points := np.ascontiguousarray(points), min(neighbours, len(points)))[0]
     values, axes = principal_axes(points, near)
-    normals = axes[:, 2]
+    normals, total = axes[:, 2], values.sum(axis=1)
     sign = np.where(np.einsum("ij,ij->i", normals, outward) < 0, -1.0, 1.0)
-    total = values.sum(axis=1)
     return normals * sign[:, None], np.divide(values[:, 2], total, out=np.zeros(len(points)), where=total > 0)
 
 
@@ -234,10 +237,8 @@ def verdict(distance: float, median: float, angles: Numbers, params: StabilityPa
         return False, f"{_why_not(angles)} (distance {distance:.3f}, at most {params.distance})"
     if median > params.curvature:
         return False, f"what is left is thick: curvature rose by {median:.3f} (median, at most {params.curvature})"
-    return (
-        True,
-        f"normals are spread evenly across a curve (distance {distance:.3f}), curvature changed by {median:.3f}",
-    )
+    reason = f"normals are spread evenly across a curve (distance {distance:.3f}), curvature changed by {median:.3f}"
+    return True, reason
 
 
 def _why_not(angles: Numbers) -> str:

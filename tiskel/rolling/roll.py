@@ -1,5 +1,6 @@
 """The stage ``roll``: a surface and a twist in, the way of a sphere over the surface out."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,12 +8,13 @@ import numpy as np
 from tiskel.arrays import TINY, Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
+from tiskel.progress import Report, Span
 from tiskel.rolling.endings import Ending, endings
 from tiskel.rolling.equations import frame_turn, margin
 from tiskel.rolling.inputs import Inputs, constant, of_the_object, sphere_axes
 from tiskel.rolling.models import RollingModel, model_of, tube_of
 from tiskel.rolling.reading import path_lengths, read
-from tiskel.rolling.solution import solve
+from tiskel.rolling.solution import duration_of, solve
 from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate
 from tiskel.rolling.trajectory import RollStatus, Trajectory
 from tiskel.slicing.fitted import FittedSurface
@@ -27,7 +29,10 @@ STANDING = 1e-6  # of the sphere's radius: shorter ways are rounding
 GRID = 72, 200  # places around and along where a sphere that does not fit is tried
 
 
-def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: Inputs | None = None) -> Trajectory:
+def roll(
+    surface: ParametricSurface, params: RollParams | None = None, inputs: Inputs | None = None, *,
+    progress: Report | None = None,
+) -> Trajectory:  # fmt: skip
     """Roll a sphere over a surface (Wen et al. 2025, corrected; see :mod:`tiskel.rolling.equations`).
 
     The state is integrated as u_o, v_o and a unit quaternion, so that the poles
@@ -43,6 +48,8 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
         Model, side, sphere, twist, duration and tolerances.
     inputs : Inputs, optional
         omega and V over time, in place of those of the settings.
+    progress : callable, optional
+        Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the run.
 
     Returns
     -------
@@ -67,14 +74,19 @@ def roll(surface: ParametricSurface, params: RollParams | None = None, inputs: I
     >>> r.status.value, r.warnings
     ('finished', ())
     """
+    span = Span(progress, "roll")
+    span.at(0, "start")
     params, inputs = params or RollParams(), inputs or constant(params or RollParams())
     radius = params.radius or USUAL_RADIUS * median_radius(surface)
     model = model_of(surface, params, radius)
     watched = endings(surface, model, params, radius)
     start = _start(surface, params)
     _check_start(surface, params, radius, start, watched)
-    solution = solve(_Rate(model, params, inputs), start, params, inputs, radius, watched)
+    rate = _Rate(model, params, inputs)
+    told = rate if progress is None else _told(rate, duration_of(params, inputs), span)
+    solution = solve(told, start, params, inputs, radius, watched)
     lengths = path_lengths(model, radius, solution)
+    span.at(1)
     return Trajectory(
         solution.t, **read(surface, model, params.sigma, radius, solution.states, params.start[4]),
         path_object=lengths[0], path_sphere=lengths[1], status=solution.status, reason=solution.reason,
@@ -118,6 +130,20 @@ class _Rate:
         a, b, c = frame_turn(forms, moving)
         # In the axes of the contact frame the sphere turns by -omega, and the frame itself turns.
         return *moving, *quaternion_rate((-omega[0] - a, -omega[1] - b, -omega[2] - c), q)
+
+
+def _told(rate: _Rate, duration: float, span: Span) -> Callable[[float, Numbers], tuple[float, ...]]:
+    """Return the right-hand side, telling how much of the duration is solved, a hundred times at most."""
+    reached = 0.0
+
+    def call(t: float, y: Numbers) -> tuple[float, ...]:
+        nonlocal reached
+        if (share := min(1.0, t / duration)) >= reached:
+            span.at(share, "motion")
+            reached = share + 0.01
+        return rate(t, y)
+
+    return call
 
 
 def _start(surface: ParametricSurface, params: RollParams) -> Numbers:

@@ -14,12 +14,13 @@ from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.spacing import spacing_of
 from tiskel.geometry.strays import body_rows
 from tiskel.params import SurfaceParams
+from tiskel.progress import Report, Span
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
 from tiskel.slicing.field import fit_field
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.mesh import mesh_report
-from tiskel.slicing.paths import LEAST_NODES, Path, paths_of
+from tiskel.slicing.paths import LEAST_NODES, Path, dense, paths_of
 from tiskel.slicing.rings import Ring, around, cut, frames_along
 from tiskel.slicing.sections import Case, Section, fit_section
 from tiskel.slicing.series import chosen_order, fit_sections, joined_series, without_unlike
@@ -41,7 +42,10 @@ class _Rejected(Exception):
     """A branch without a surface, and why."""
 
 
-def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: Points | None = None) -> Surfaces:
+def fit_surface(
+    skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: Points | None = None, *,
+    progress: Report | None = None,
+) -> Surfaces:  # fmt: skip
     """Fit a Fourier surface around every branch of a skeleton (Wen et al. 2025; see :mod:`tiskel.surfaces.tube`).
 
     Of a tiskel skeleton every slice sees the points of its branch only; of a
@@ -55,6 +59,8 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
         The settings.
     cloud : (n, 3) float64, optional
         The cloud around a curve from elsewhere, in its unit; a skeleton brings its own.
+    progress : callable, optional
+        Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the fit.
 
     Returns
     -------
@@ -74,7 +80,8 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
     >>> len(surfaces), surfaces[0].order, surfaces[0].error < 0.01
     (1, 3, True)
     """
-    params = params or SurfaceParams()
+    params, span = params or SurfaceParams(), Span(progress, "slice")
+    span.at(0, "cloud")
     if isinstance(skeleton, Skeleton):
         every, owner = skeleton.cloud if cloud is None else as_points(cloud), skeleton.node_of_point
         owned = len(owner) == len(every)
@@ -83,7 +90,8 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
     else:
         every, owned = as_points(cloud), False
     body, surfaces, rejected = body_rows(every), [], {}
-    for path in paths_of(skeleton, params.branch):
+    for number, path in enumerate(paths := paths_of(skeleton, params.branch)):
+        span.at(number / len(paths), f"branch {path.name}")
         near = body & np.isin(owner, path.nodes) if owned else body
         try:
             surfaces.append(_fitted(path, skeleton.nodes, every, near, owned, params, diagonal(every[body])))
@@ -92,6 +100,7 @@ def fit_surface(skeleton: CurveGraph, params: SurfaceParams | None = None, cloud
     if not surfaces:
         reasons = "; ".join(f"branch {name}: {reason}" for name, reason in rejected.items())
         raise TiskelError(f"no branch can be sliced: {reasons}")
+    span.at(1)
     return Surfaces(tuple(surfaces), rejected, every)
 
 
@@ -117,8 +126,8 @@ class _Cutter:
         found = cut(self.points, axis, field, places, self.half, reach, self.link)
         every, sizes = np.concatenate(found), [len(rows) for rows in found]
         all_at_once = around(self.points, every, axis, field, np.repeat(places, sizes))
-        parts = np.cumsum(sizes)[:-1]
-        columns = (np.split(column, parts) for column in (every, all_at_once.u, all_at_once.v, all_at_once.r))
+        flat = every, all_at_once.u, all_at_once.v, all_at_once.r
+        columns = (np.split(column, np.cumsum(sizes)[:-1]) for column in flat)
         return [Ring(*ring) for ring in zip(*columns, strict=True)]
 
 
@@ -129,7 +138,7 @@ def _fitted(
     points, count = np.ascontiguousarray(cloud[near]), _slices(path, nodes, interval)
     if len(near) < params.least_points:
         raise _Rejected(f"{len(near)} points lie about it")
-    radius = float(np.median(cKDTree(_dense(nodes[path.nodes], interval)).query(points)[0])) if owned else interval
+    radius = float(np.median(cKDTree(dense(nodes[path.nodes], interval)).query(points)[0])) if owned else interval
     coarse = min(max(len(path.nodes) // 2, INTERVALS[0]), max(count // 2, INTERVALS[0]))
     axis = fit_axis(nodes[path.nodes], np.ones(len(path.nodes)), radius, coarse, closed=path.closed)
     spacing = spacing_of(points)
@@ -182,15 +191,6 @@ def _slices(path: Path, nodes: Points, interval: float) -> int:
     if count < LEAST_SLICES:
         raise _Rejected(f"it is {length:.4g} long, too short for {LEAST_SLICES} slices {interval:.4g} apart")
     return count
-
-
-def _dense(polyline: Points, step: float) -> Points:
-    """Return places along a polyline no further apart than a step."""
-    parts = [polyline[-1:]]
-    for a, b in zip(polyline[:-1], polyline[1:], strict=True):
-        share = np.linspace(0, 1, 1 + int(np.ceil(np.linalg.norm(b - a) / step)), endpoint=False)
-        parts.append(a + share[:, None] * (b - a))
-    return np.concatenate(parts)
 
 
 def _recentred(axis: BSplineCurve, cutter: _Cutter, count: int) -> tuple[BSplineCurve, _Cutter]:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
-from tiskel.arrays import TINY, Indices
+from tiskel.arrays import TINY, Indices, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.frames import step_lengths
 from tiskel.geometry.graph import CurveGraph, component_labels
@@ -97,3 +97,12 @@ def longest_path(curve: CurveGraph) -> Indices:
 
 def _length(curve: CurveGraph, path: Indices) -> float:
     return float(step_lengths(curve.nodes[path]).sum())
+
+
+def dense(polyline: Points, step: float) -> Points:
+    """Return places (m, 3) along a polyline (n, 3), no further apart than a step."""
+    parts = [polyline[-1:]]
+    for a, b in zip(polyline[:-1], polyline[1:], strict=True):
+        share = np.linspace(0, 1, 1 + int(np.ceil(np.linalg.norm(b - a) / step)), endpoint=False)
+        parts.append(a + share[:, None] * (b - a))
+    return np.concatenate(parts)

@@ -18,13 +18,14 @@ from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edge
 from tiskel.methods.laplacian.sampling import front_samples
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import LaplacianParams
+from tiskel.progress import SILENT, Span
 
 SINGLE = CurveWarning(
     "short", "the cloud contracted to a single node: it has no elongated part at this sampling radius", share=1.0
 )
 
 
-def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:
+def curve(trace: Trace, params: LaplacianParams, span: Span = SILENT) -> MethodCurve:
     """Return the curve of a contracted cloud.
 
     Parameters
@@ -33,6 +34,8 @@ def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:
         Of lbc or gls, in normalised coordinates.
     params : LaplacianParams
         ``radius`` of the balls, in diagonals of the cloud, and ``raw`` count.
+    span : Span
+        Told as parts begin.
 
     Returns
     -------
@@ -45,8 +48,10 @@ def curve(trace: Trace, params: LaplacianParams) -> MethodCurve:
     """
     if trace.rings is None:
         raise TiskelError("the contraction has no rings; run tiskel contract again with --method lbc or gls")
+    span.at(0, "samples")
     samples, owner = front_samples(trace.points, params.radius * diagonal(trace.cloud))
     joined = inherited_edges(trace.rings, owner, trace.points[samples])
+    span.at(0.5, "triangles")
     nodes, edges, into = collapse_triangles(trace.points[samples], joined)
     node_of_point = into[owner][trace.survivor_of()]
     owned = np.isin(np.arange(len(nodes)), node_of_point)

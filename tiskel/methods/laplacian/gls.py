@@ -18,10 +18,11 @@ from tiskel.arrays import Indices, Numbers, Points
 from tiskel.geometry.neighbours import surroundings
 from tiskel.geometry.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
 from tiskel.geometry.solve import SingularStep, contracted
-from tiskel.methods.laplacian.lbc import grew, next_weights, weighted
+from tiskel.methods.laplacian.lbc import RINGS, USUAL_STEPS, grew, next_weights, weighted
 from tiskel.methods.laplacian.reduction import Merge, matching, merge, stage_function
 from tiskel.methods.trace import Status, StepRecord, Trace
 from tiskel.params import GlsParams
+from tiskel.progress import SILENT, Span
 from tiskel.timing import Stopwatch
 
 
@@ -41,7 +42,9 @@ class _State:
     count_before: int  # points when the score was taken
 
 
-def contract_gls(points: Points, params: GlsParams, weights: Numbers | None = None) -> Trace:
+def contract_gls(
+    points: Points, params: GlsParams, weights: Numbers | None = None, span: Span = SILENT
+) -> Trace:  # fmt: skip
     """Contract and reduce until the explained score settles.
 
     Parameters
@@ -51,6 +54,8 @@ def contract_gls(points: Points, params: GlsParams, weights: Numbers | None = No
     params : GlsParams
     weights : (n,) float64, optional
         What W_L of every point is multiplied by; as in lbc.
+    span : Span
+        Told as steps begin.
 
     Returns
     -------
@@ -58,6 +63,7 @@ def contract_gls(points: Points, params: GlsParams, weights: Numbers | None = No
         Its points are those that no merge removed.
     """
     watch = Stopwatch()
+    span.at(0, "rings")
     with watch.measure("rings"):
         state = _start(points, params)
     first_weight, first_count = state.contraction, len(points)
@@ -66,6 +72,7 @@ def contract_gls(points: Points, params: GlsParams, weights: Numbers | None = No
     history: list[tuple[Indices, Points]] = []
     status = Status.MAX_STEPS
     for number in range(params.max_steps):
+        span.within(RINGS, 1).step(number, USUAL_STEPS, f"step {number + 1}")
         step_watch = Stopwatch()
         try:
             delta, there = _solve(state, params, step_watch, weights)

@@ -15,10 +15,15 @@ from tiskel.geometry.solve import SingularStep, contracted
 from tiskel.methods.laplacian.toolbox_order import in_published_order
 from tiskel.methods.trace import Status, StepRecord, Trace
 from tiskel.params import LaplacianParams, LbcParams
+from tiskel.progress import SILENT, Span
 from tiskel.timing import Stopwatch
 
+RINGS, USUAL_STEPS = 0.1, 6  # share of the time that rings take, and steps, in most clouds; for who waits only
 
-def contract_lbc(points: Points, params: LbcParams, weights: Numbers | None = None) -> Trace:
+
+def contract_lbc(
+    points: Points, params: LbcParams, weights: Numbers | None = None, span: Span = SILENT
+) -> Trace:  # fmt: skip
     """Contract until the ratio of summed ring sizes falls by less than the stop ratio.
 
     Parameters
@@ -28,6 +33,8 @@ def contract_lbc(points: Points, params: LbcParams, weights: Numbers | None = No
     params : LbcParams
     weights : (n,) float64, optional
         Multiply W_L point by point, as in S-LBC (Meyer et al. 2023), where parts of one thickness share one; None: 1.
+    span : Span
+        Told as steps begin.
 
     Returns
     -------
@@ -35,6 +42,7 @@ def contract_lbc(points: Points, params: LbcParams, weights: Numbers | None = No
         A contraction without a single step holds the points as they came.
     """
     watch = Stopwatch()
+    span.at(0, "rings")
     with watch.measure("rings"):
         rings = published_rings(points, params.neighbours_for(len(points)))
     first_sizes = smallest_distances(points, rings)
@@ -44,7 +52,8 @@ def contract_lbc(points: Points, params: LbcParams, weights: Numbers | None = No
     steps: list[StepRecord] = []
     history: list[tuple[Indices, Points]] = []
     everyone = np.arange(len(points), dtype=np.int32)
-    for _ in range(params.max_steps):
+    for number in range(params.max_steps):
+        span.within(RINGS, 1).step(number, USUAL_STEPS, f"step {number + 1}")
         step_watch = Stopwatch()
         try:
             there = one_step(here, rings, contraction, attraction, params, step_watch, weights)

@@ -45,6 +45,7 @@ from tiskel.methods.robust.thinning import remembered, thinned
 from tiskel.methods.robust.treelike import without_contacts
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
+from tiskel.progress import SILENT, Span
 from tiskel.timing import Stopwatch
 
 # Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
@@ -59,7 +60,8 @@ CLEARLY = 0.7  # of the misfit so far that another front may leave, to be taken 
 
 
 def contract(
-    points: Points, params: RobustParams, weights: Numbers | None = None, surface: MeshSurface | None = None
+    points: Points, params: RobustParams, weights: Numbers | None = None, surface: MeshSurface | None = None,
+    span: Span = SILENT,
 ) -> Trace:  # fmt: skip
     """Contract a cloud (n, 3) by fronts, one step each; of points on a mesh, along it.
 
@@ -68,14 +70,16 @@ def contract(
     if weights is not None:
         raise TiskelError("method robust takes no weights; leave them out, or choose method lbc or gls")
     watch = Stopwatch()
+    span.at(0, "neighbours")
     with watch.measure("network"):
         few = thinned(points, params.max_points if surface is None else 0)  # a mesh was sampled as it needs
         network = prepared(few.points, params.neighbours_for(len(few.points)), surface)
+    span.at(0.5, "fronts")
     trace = few.whole(contract_by_fronts(network, few.points, params), points)
     return replace(trace, ring_seconds=trace.ring_seconds + watch.seconds["network"])
 
 
-def curve(trace: Trace, params: RobustParams) -> MethodCurve:
+def curve(trace: Trace, params: RobustParams, span: Span = SILENT) -> MethodCurve:
     """Return the curve of round cones of a contracted cloud.
 
     Raises TiskelError where the trace has no sections: it is another method's.
@@ -83,19 +87,23 @@ def curve(trace: Trace, params: RobustParams) -> MethodCurve:
     if trace.sections is None:
         raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
     network = trace.prepared or prepared(remembered(trace), params.neighbours_for(len(trace.rows)), trace.surface)
-    best = on_sheets(without_contacts(_best(network, trace, params), params), params.seen_from)
+    found = without_contacts(_best(network, trace, params, span.within(0, 0.9)), params)
+    best = on_sheets(found, params.seen_from)
+    span.at(0.9, "doubts")
     return _translated(best, trace, network)
 
 
-def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
+def _best(network: Network, trace: Trace, params: RobustParams, span: Span) -> Candidate:
     """Return the best curve, of tubes or of wires."""
+    span.at(0, "solid")
     assert trace.sections is not None  # curve() has seen to that
     contracted = np.ascontiguousarray(trace.points @ network.axes.T)
     oriented, mesh = network.oriented(contracted), network.surface
     solid = solid_of(oriented) if mesh is None else solid_of(oriented, mesh.handles, mesh.outward)
     if params.regime == "wire" or (params.regime == "auto" and surely_wires(network)):
         return wires(network, solid, params)
-    best = fitted_curve(network, solid, trace.sections, params)
+    best = fitted_curve(network, solid, trace.sections, params, span.within(0.1, 0.5))
+    span.at(0.5, "other curves")
     if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params, best), best):
         return thin
     if flat_share(best) > FLAT:  # what encloses nothing has no inside to judge a curve by, though perhaps limbs
@@ -108,6 +116,7 @@ def _best(network: Network, trace: Trace, params: RobustParams) -> Candidate:
     for number in range(1, params.extra_fronts + 1):
         if best.misfit < number * DOUBTFUL:
             break
+        span.at(0.6 + 0.4 * (number - 1) / params.extra_fronts, f"further front {number}")
         sections = further_front(network, contracted, params, number)
         other = fitted_curve(network, solid, sections, params)
         best = other if _clearly(other, best) else best

@@ -20,9 +20,12 @@ from tiskel.methods.robust.pieces import joined_pieces
 from tiskel.methods.robust.sections import section_graph
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
+from tiskel.progress import SILENT, Span
 
 
-def fitted_curve(network: Network, solid: Solid, sections: Sections, params: RobustParams) -> Candidate:
+def fitted_curve(
+    network: Network, solid: Solid, sections: Sections, params: RobustParams, span: Span = SILENT
+) -> Candidate:  # fmt: skip
     """Return the curve of round cones that the sections of a front lead to, and what judges it.
 
     A change to the graph needs half as many rounds of the fit as its first form,
@@ -34,15 +37,18 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
         return fit_cones(curve, network.points, sections.section, rounds=rounds, straightness=params.straightness)
 
     # The graph of the sections, without what chance and holes made.
+    span.at(0, "graph")
     curve = section_graph(network, sections)
     curve = without_filled_cycles(curve, network, sections, solid, fitted=False)
     curve = merged_junctions(without_spurs(curve, network.points, sections), params.merge_junctions)
+    span.at(0.1, "fit")
     found = fit(placed_junctions(without_contained_ends(curve), solid), params.rounds)
     # Branches that the front took in sideways.
     grown = with_missed_branches(found, network, sections, params)
     if grown is not None:
         curve, sections = grown
         found = fit(placed_junctions(without_contained_ends(curve), solid), params.rounds)
+    span.at(0.4, "cycles and branches")
     # Now that nodes are where they should be: cycles without a hole, branches that explain nothing.
     curve = without_filled_cycles(found.curve, network, sections, solid, fitted=True)
     if len(curve.nodes) < len(found.curve.nodes):
@@ -50,6 +56,7 @@ def fitted_curve(network: Network, solid: Solid, sections: Sections, params: Rob
     while (fewer := without_explained_branches(curve, network, sections, params.least_branch)) is not None:
         curve = fit(fewer, again).curve
     found = fit(placed_junctions(curve, solid), again)  # now that the branches are known
+    span.at(0.8, "ends")
     for _ in range(params.grow_ends):
         longer = with_tips(found, network, sections)
         if longer is None:
