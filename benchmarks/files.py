@@ -1,13 +1,18 @@
-"""How long a contraction takes to write and to read, in what plyfile needs for as many scalar values.
+"""How long a contraction takes to write and to read, and what a pipe of commands costs over the work in it.
 
-    python benchmarks/files.py [POINTS]     # 262144 without
+    python benchmarks/files.py [POINTS]                # 262144 without
+    python benchmarks/files.py 1000000 --pipe robust   # contract | skeleton by command, over the same in process
+    python benchmarks/files.py --write                 # into benchmarks/speed/files.csv and .md, or pipe.csv and .md
 
 plyfile writes and reads files with the same columns, as plain tables, and copies
 every column once, as whoever uses them does. Least times of alternating runs, in
-one process; files lie in a temporary folder.
+one process; files lie in a temporary folder. The pipe reads a PLY and writes one;
+in process the cloud is in memory and the curve stays there. Held at 2 times.
 """
 
-import sys
+import argparse
+import statistics
+import subprocess
 import tempfile
 import time
 from collections.abc import Callable
@@ -16,19 +21,29 @@ from pathlib import Path
 
 import numpy as np
 from plyfile import PlyData, PlyElement
+from startup import program
+from tables import Row, shown, written
 
 from tiskel import (
     Contraction,
+    ContractionParams,
     ShapeParams,
     contract,
+    extract_skeleton,
     make_shape,
     read_contraction,
     shape_graph,
     write_contraction,
 )
 from tiskel.geometry.rings import Rings
+from tiskel.io.clouds import dump_cloud
 
-COUNT, RUNS, RING = 262144, 7, 7  # points; of each; members of a ring, as many as lbc's have in the mean
+COUNT, RUNS, RING, PIPES = (
+    262144,
+    7,
+    7,
+    3,
+)  # points; of each; members of a ring, as many as lbc's have in the mean; runs of a pipe
 
 
 def with_rings(c: Contraction) -> Contraction:
@@ -78,24 +93,67 @@ def least(works: list[Callable[[], object]]) -> list[float]:
     return [min(found) for found in times]
 
 
-def main() -> None:
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else COUNT
-    made = contract(make_shape(shape_graph("quadruped"), ShapeParams(count=count))[0])
+def files(count: int) -> list[Row]:
+    """Return what writing and reading take, in seconds and in times of plyfile."""
+    made, rows = contract(make_shape(shape_graph("quadruped"), ShapeParams(count=count))[0]), []
     with tempfile.TemporaryDirectory() as folder:
         ours, theirs = Path(folder, "ours.ply"), Path(folder, "theirs.ply")
         for name, c, history in (
             ("robust", made, False), ("robust, history", made, True), ("rings", with_rings(made), False),
         ):  # fmt: skip
             columns = tables(c, history)
-            written = least([
+            wrote = least([
                 lambda c=c, history=history: write_contraction(ours, c, history=history),  # type: ignore[misc]
                 lambda columns=columns: write_plain(theirs, columns),  # type: ignore[misc]
             ])  # fmt: skip
             read = least([lambda: read_contraction(ours), lambda: read_plain(theirs)])
-            print(
-                f"{count} points, {name}: written in {written[0]:.3f} s, {written[0] / written[1]:.2f} times plyfile; "
-                f"read in {read[0]:.3f} s, {read[0] / read[1]:.2f} times"
-            )
+            rows.append({
+                "points": str(count), "file": name, "written s": f"{wrote[0]:.3f}",
+                "over plyfile": f"{wrote[0] / wrote[1]:.2f}", "read s": f"{read[0]:.3f}",
+                "over plyfile, read": f"{read[0] / read[1]:.2f}",
+            })  # fmt: skip
+    return rows
+
+
+def pipe(count: int, method: str) -> list[Row]:
+    """Return what contract | skeleton takes by command, and the same in process; the first of both warms up."""
+    cloud = make_shape(shape_graph("quadruped"), ShapeParams(count=count))[0]
+    params = ContractionParams(method=method)
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder, "in.ply")
+        source.write_bytes(dump_cloud(cloud, source))
+        one = program("contract", str(source), "-q", "--method", method)
+        commands = f"{one} | {program('skeleton', '-', '-q', '-o', f'{folder}/out.ply')}"
+        works = {
+            "in process": lambda: extract_skeleton(contract(cloud, params)),
+            "by command": lambda: subprocess.run(commands, shell=True, check=True),
+        }
+        times: dict[str, list[float]] = {name: [] for name in works}
+        for number in range(PIPES + 1):
+            for name, work in works.items():
+                start = time.perf_counter()
+                work()
+                if number or count > COUNT:  # what takes minutes is warm from its start
+                    times[name].append(time.perf_counter() - start)
+            if count > COUNT:
+                break
+    ratios = [a / b for a, b in zip(times["by command"], times["in process"], strict=True)]
+    seconds = {f"{name} s": f"{statistics.median(found):.2f}" for name, found in times.items()}
+    return [{"points": str(count), "method": method, **seconds, "ratio": f"{statistics.median(ratios):.2f}"}]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("points", type=int, nargs="*", default=[COUNT])
+    parser.add_argument("--pipe", metavar="METHOD")
+    parser.add_argument("--write", action="store_true")
+    given = parser.parse_args()
+    rows = [row for count in given.points for row in (pipe(count, given.pipe) if given.pipe else files(count))]
+    print(shown(rows))
+    if given.write and given.pipe:
+        written("pipe", rows, "contract | skeleton by command, files included, over the same work in process.")
+    elif given.write:
+        written("files", rows, "Stage files of a contraction, least times of alternating runs, over plyfile's.")
 
 
 if __name__ == "__main__":
