@@ -9,8 +9,6 @@ Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
 Indices = ti.types.ndarray(dtype=ti.i32, ndim=1)
 Table = ti.types.ndarray(dtype=ti.i32, ndim=2)
 
-NONE = 2**31 - 1
-
 
 @ti.kernel
 def _stage_function(
@@ -66,35 +64,18 @@ def _nearest_members(points: Points, rings: Table, counts: Indices, marked: Indi
 
 
 @ti.kernel
-def _claim(pending: Indices, partner: Indices, claims: Indices):
-    """Write on both points of every pending pair the lowest pair that touches them (integer minima commute)."""
-    for i in claims:
-        claims[i] = NONE
-    for i in pending:
-        if pending[i] == 1:
-            ti.atomic_min(claims[i], i)
-            ti.atomic_min(claims[partner[i]], i)
-
-
-@ti.kernel
-def _settle(pending: Indices, partner: Indices, claims: Indices, taken: Indices, merged_into: Indices):
-    """Accept the pairs that hold the lowest claim on both of their points."""
-    for i in pending:
-        if pending[i] == 1 and claims[i] == i and claims[partner[i]] == i:
-            merged_into[partner[i]] = i
+def _greedy_matching(partner: Indices, taken: Indices, merged_into: Indices):
+    """Go through the pairs in order and accept those with both points free; in one thread, a few steps a point."""
+    ti.loop_config(serialize=True)
+    for i in partner:
+        other = partner[i]
+        free = other >= 0
+        if free:
+            free = taken[i] == 0 and taken[other] == 0
+        if free:
+            merged_into[other] = i
             taken[i] = 1
-            taken[partner[i]] = 1
-
-
-@ti.kernel
-def _withdraw(pending: Indices, partner: Indices, taken: Indices) -> ti.i32:
-    """Drop the pairs with a point that is taken; return how many are still pending."""
-    left = 0
-    for i in pending:
-        if pending[i] == 1 and (taken[i] == 1 or taken[partner[i]] == 1):
-            pending[i] = 0
-        left += pending[i]
-    return left
+            taken[other] = 1
 
 
 @ti.kernel
@@ -117,7 +98,5 @@ def _rename(rings: Table, counts: Indices, renamed: Indices, out: Table, out_cou
 
 stage_function = started(_stage_function)
 nearest_members = started(_nearest_members)
-claim = started(_claim)
-settle = started(_settle)
-withdraw = started(_withdraw)
+greedy_matching = started(_greedy_matching)
 rename = started(_rename)

@@ -37,7 +37,7 @@ def test_stage_function_equals_the_formula(capsule: Points, shrinkage: float) ->
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0, 1))
-def test_parallel_matching_is_the_greedy_one_in_index_order(seed: int, share: float) -> None:
+def test_matching_is_the_greedy_one_in_index_order(seed: int, share: float) -> None:
     generator = np.random.default_rng(seed)
     n = 60
     points = generator.integers(0, 6, size=(n, 3)).astype(float)  # a coarse lattice, so that distances tie
@@ -55,8 +55,8 @@ def test_parallel_matching_is_the_greedy_one_in_index_order(seed: int, share: fl
     assert len(touched) == len(set(touched))
 
 
-def test_matching_of_a_long_chain_settles() -> None:
-    """Every pair waits for the one before it: the worst case for rounds."""
+def test_matching_of_a_long_chain_takes_every_other_pair() -> None:
+    """Every pair depends on the one before it."""
     n = 500
     points = np.cumsum(np.linspace(2, 1, n))[:, None] * [1.0, 0, 0]
     members = np.append(np.arange(1, n), n - 2)[:, None].astype(np.int32)

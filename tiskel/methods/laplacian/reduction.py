@@ -99,10 +99,8 @@ def stage_function(
 def matching(points: Points, rings: Rings, marked: Mask) -> Indices:
     """Match points that may merge with ring members.
 
-    Each marked point asks for its nearest ring member; among the pairs that
-    share a point the one asked for by the lowest index wins, again and again,
-    until no pair is left. That is the greedy matching in index order, whatever
-    the number of threads.
+    Each marked point asks for its nearest ring member, in index order, and has it
+    where both are still free.
 
     Parameters
     ----------
@@ -121,14 +119,9 @@ def matching(points: Points, rings: Rings, marked: Mask) -> Indices:
     from tiskel.kernels import reduction as kernel
 
     n = len(points)
-    partner, claims, merged_into = np.empty(n, np.int32), np.empty(n, np.int32), np.full(n, -1, np.int32)
+    partner, merged_into = np.empty(n, np.int32), np.full(n, -1, np.int32)
     kernel.nearest_members(points, rings.members, rings.sizes, marked.astype(np.int32), partner)
-    pending, taken = (partner >= 0).astype(np.int32), np.zeros(n, np.int32)
-    left = int(pending.sum())
-    while left:
-        kernel.claim(pending, partner, claims)
-        kernel.settle(pending, partner, claims, taken, merged_into)
-        left = kernel.withdraw(pending, partner, taken)
+    kernel.greedy_matching(partner, np.zeros(n, np.int32), merged_into)
     return merged_into
 
 
