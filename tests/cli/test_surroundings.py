@@ -148,3 +148,21 @@ def test_a_wrong_number_of_threads_is_one_error_line(value: str, tiskel: Runner,
     assert (
         line == f"error: TISKEL_NUM_THREADS must be a whole number from 1 to 1024, got {value!r}; correct or unset it"
     )
+
+
+def test_a_pipe_of_four_commands_shares_a_cold_cache_and_is_as_four_commands_in_turn(
+    tiskel: Runner, cloud: Path, tmp_path: Path
+) -> None:
+    """Each waits for the one before it; all write kernels into one cache."""
+    environment = {**os.environ, "TI_OFFLINE_CACHE_FILE_PATH": str(tmp_path / "cache")}
+    stages = ("contract y.ply", "skeleton -", "slice -", "roll - --duration 1")
+    piped = subprocess.run(
+        " | ".join(f"'{PROGRAM}' {stage} -q" for stage in stages),
+        shell=True, capture_output=True, cwd=tmp_path, env=environment, check=True,
+    )  # fmt: skip
+    assert piped.stderr == b""
+    data: bytes | None = None
+    for stage in stages:
+        data = tiskel(*stage.split(), "-q", data=data, **environment).stdout
+    assert piped.stdout == data
+    assert piped.stdout.count(b"\n") > 10
