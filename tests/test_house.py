@@ -72,6 +72,14 @@ def test_everything_public_is_documented(path: Path) -> None:
     assert undocumented(path) == []
 
 
+def test_every_package_goes_into_the_wheel() -> None:
+    """An editable installation finds those that are forgotten there."""
+    listed = (ROOT / "pyproject.toml").read_text().split("packages = [")[1].split("]")[0]
+    packages = [path.parent.relative_to(ROOT) for path in MODULES if path.name == "__init__.py"]
+    names = [".".join(parts if parts[0] == "tiskel" else ("tiskel", *parts)) for parts in (p.parts for p in packages)]
+    assert sorted(names) == sorted(name.strip().strip('"') for name in listed.split(",") if name.strip())
+
+
 @pytest.mark.parametrize("name", tiskel.__all__)
 def test_public_names_exist(name: str) -> None:
     assert getattr(tiskel, name).__module__.startswith("tiskel.")
