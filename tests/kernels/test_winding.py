@@ -58,3 +58,12 @@ def test_a_hemisphere_is_half_as_much_at_its_centre() -> None:
 def test_a_place_on_a_point_has_a_finite_number() -> None:
     surface = sphere(500)
     assert np.isfinite(surface.winding_numbers(surface.points)).all()
+
+
+def test_a_place_has_its_number_in_any_company() -> None:
+    """Eight places ask at a time; each far block is summed up for those it is far from, and only for those."""
+    surface = sphere(2000)
+    queries = np.random.default_rng(5).normal(size=(101, 3))
+    together = surface.winding_numbers(queries)
+    assert (together == [surface.winding_numbers(query[None])[0] for query in queries]).all()
+    assert len(surface.winding_numbers(np.zeros((0, 3)))) == 0

@@ -83,10 +83,16 @@ class OrientedCloud:
 
     def winding_numbers(self, queries: Points) -> Numbers:
         """Return (m,) the winding number of the surface about queries (m, 3)."""
-        from tiskel.kernels.winding import winding_numbers
+        from tiskel.kernels.winding import LANES, winding_numbers
 
-        out = np.empty(len(queries))
-        winding_numbers(np.ascontiguousarray(queries), *self._blocks, out)
+        if len(queries) == 0:
+            return np.zeros(0)
+        curve = morton_curve(np.ascontiguousarray(queries))  # what lies side by side asks the same blocks
+        lacking = -len(queries) % LANES
+        whole = np.concatenate([curve.points, np.repeat(curve.points[-1:], lacking, axis=0)])
+        found, out = np.empty(len(whole)), np.empty(len(queries))
+        winding_numbers(whole, *self._blocks, found)
+        out[curve.order] = found[: len(queries)]
         return out
 
     def contains(self, queries: Points) -> Mask:
