@@ -24,6 +24,7 @@ Masks = np.ndarray[tuple[int, int], np.dtype[np.bool_]]  #: shape (n, k)
 
 TINY = np.finfo(float).tiny  # the least normal number: keeps what may be zero from being divided by
 MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
+SPREAD = np.uint64(0x9E3779B97F4A7C15)  # 2**64 over the golden ratio, odd: spreads bits (Knuth, volume 3, section 6.4)
 FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or a line to rounding
 
 
@@ -86,8 +87,25 @@ def first_of_duplicates(points: Points) -> Indices:
     (n,) int32
         The row itself where it is alone or first.
     """
-    _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    return first[inverse.ravel()].astype(np.int32)
+    everyone = np.arange(len(points), dtype=np.int32)
+    marks = _marks(points)
+    ordered = np.sort(marks)
+    repeated = ordered[1:][ordered[1:] == ordered[:-1]]
+    if len(repeated):
+        rows = np.flatnonzero(np.isin(marks, repeated))
+        _, first, inverse = np.unique(points[rows], axis=0, return_index=True, return_inverse=True)
+        everyone[rows] = rows[first[inverse.ravel()]]
+    return everyone
+
+
+def _marks(points: Points) -> npt.NDArray[np.uint64]:
+    """Return (n,) a number for each point, the same for the same place, seldom the same for others."""
+    words = np.ascontiguousarray(points + 0.0).view(np.uint64)  # -0 is 0
+    marks = np.zeros(len(points), np.uint64)
+    for column in words.T:
+        marks = (marks ^ column ^ (column >> np.uint64(32))) * SPREAD
+        marks ^= marks >> np.uint64(29)
+    return marks
 
 
 def resolved(into: Indices) -> Indices:

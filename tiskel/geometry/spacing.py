@@ -37,9 +37,27 @@ def spacings_from(squares: Table) -> Numbers:
     return np.asarray(np.sqrt(squares[:, k]) / np.sqrt(max(k, 1) / np.pi))
 
 
-def spacing_of(points: Points) -> float:
-    """Return the median spacing of points (n, 3), 0 of fewer than two."""
+def spacing_of(points: Points, tree: cKDTree | None = None, most: int | None = None) -> float:
+    """Return the median spacing of points.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        In any unit.
+    tree : cKDTree, optional
+        Of the points, where there is one.
+    most : int, optional
+        How many points are looked at, evenly along the first axis; not given: all.
+
+    Returns
+    -------
+    float
+        In the unit of the points; 0 of fewer than two.
+    """
     if len(points) < 2:
         return 0.0
-    distances = cKDTree(points).query(points, k=min(NEIGHBOURS + 1, len(points)))[0]
+    tree = cKDTree(points) if tree is None else tree
+    if most is not None and len(points) > most:
+        points = points[np.argsort(points[:, 0])[:: -(-len(points) // most)]]
+    distances = tree.query(points, k=min(NEIGHBOURS + 1, tree.n))[0]
     return float(np.median(spacings_from(distances**2)))

@@ -21,13 +21,16 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, Table, finite_rows, first_of_duplicates
-from tiskel.geometry.spacing import NEIGHBOURS, spacings_from
+from tiskel.geometry.cells import cell_numbers
+from tiskel.geometry.spacing import NEIGHBOURS, spacing_of, spacings_from
 
 # By reasoning: along a wire sampled at random a gap of 8 spacings (16 mean gaps) is there once in ten million points.
 GAP = 8.0  # local spacings, per point of a group, between it and what is around
 FEW = 10  # points from which on a group is a part of the body; as many as keep a part in method robust
 PILE = 10  # times that a place is repeated at least, and as a multiple of what is usual in the file
 USUAL = 0.9  # quantile of the repetitions that says what is usual
+MANY = 32_768  # points; of more, those in crowded cells are not asked, and the median spacing is that of a sample
+SAMPLED = 8192  # points of such a sample: their median is within 2 % of that of all
 MOST = 0.05  # share of the places that may be stray; where more stand alone, that is what the cloud is like
 
 
@@ -88,13 +91,7 @@ def _alone(points: Points) -> Mask:
     if len(points) < 2 * FEW:
         return alone
     tree = cKDTree(points)
-    distances, neighbours = tree.query(points, NEIGHBOURS + 1)
-    spacings = spacings_from(distances**2)
-    spacings = np.maximum(spacings, np.median(spacings))
-    everyone = np.arange(len(points), dtype=np.int32)
-    links = _links(everyone, distances, neighbours, spacings)
-    group = connected_components(links, directed=False)[1]
-    few = np.flatnonzero(np.bincount(group)[group] < FEW).astype(np.int32)
+    few, spacings, links = (_lonely if len(points) > MANY else _linked)(points, tree)
     if len(few) in {0, len(points)}:
         return alone
     # With four neighbours a group may fall apart; with ten it sees all its members and someone outside.
@@ -110,6 +107,37 @@ def _alone(points: Points) -> Mask:
     np.minimum.at(ratio, group[few], gaps / (GAP * sizes[group[few]] * spacings[neighbours[rows, nearest]]))
     alone[few] = (sizes < FEW)[group[few]] & (ratio[group[few]] > 1)
     return alone
+
+
+def _linked(points: Points, tree: cKDTree) -> tuple[Indices, Numbers, sparse.coo_array]:
+    """Return the rows in groups of few, the spacings (n,), and the links of all points to their next."""
+    distances, neighbours = tree.query(points, NEIGHBOURS + 1)
+    spacings = spacings_from(distances**2)
+    spacings = np.maximum(spacings, np.median(spacings))
+    links = _links(np.arange(len(points), dtype=np.int32), distances, neighbours, spacings)
+    group = connected_components(links, directed=False)[1]
+    return np.flatnonzero(np.bincount(group)[group] < FEW).astype(np.int32), spacings, links
+
+
+def _lonely(points: Points, tree: cKDTree) -> tuple[Indices, Numbers, sparse.coo_array]:
+    """Return the same of many points without asking most of them: who is one of ten in a small cell is not alone.
+
+    The rows are those of other cells, and only they and what is next to them have a spacing.
+    """
+    usual = spacing_of(points, tree, SAMPLED)
+    cell = cell_numbers(points, GAP * usual / np.sqrt(3))  # whose diagonal is the shortest gap
+    crowded = np.bincount(cell)[cell] >= FEW
+    rows, rest = np.flatnonzero(~crowded).astype(np.int32), np.flatnonzero(crowded)
+    distances, neighbours = tree.query(points[rows], FEW + 1)
+    next_to = np.setdiff1d(neighbours, rows)
+    distances, neighbours = distances[:, : NEIGHBOURS + 1], neighbours[:, : NEIGHBOURS + 1]
+    spacings = np.full(len(points), usual)
+    spacings[rows] = np.maximum(spacings_from(distances**2), usual)
+    spacings[next_to] = np.maximum(spacings_from(tree.query(points[next_to], NEIGHBOURS + 1)[0] ** 2), usual)
+    chain = (np.ones(max(len(rest) - 1, 0)), (rest[:-1], rest[1:]))
+    links = _links(rows, distances, neighbours, spacings) + sparse.coo_array(chain, shape=(len(points), len(points)))
+    group = connected_components(links, directed=False)[1]
+    return rows[np.bincount(group)[group[rows]] < FEW], spacings, links
 
 
 def _links(rows: Indices, distances: Table, neighbours: Lists, spacings: Numbers) -> sparse.coo_array:

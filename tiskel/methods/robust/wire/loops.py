@@ -8,9 +8,9 @@ loop unless the user says so.
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.csgraph import connected_components, dijkstra
 
-from tiskel.arrays import Edges, Mask, Points
+from tiskel.arrays import Edges, Mask, Numbers, Points
 from tiskel.geometry.graph import component_labels
 from tiskel.methods.robust.curve import ConeCurve, with_nodes
 from tiskel.methods.robust.wire.links import Links
@@ -23,6 +23,7 @@ DETOUR = 10.0  # spacings along the curve between the two, at least
 RADII = 4.0  # the same in the sum of the radii at both
 HEAD_ON = 0.25  # share of ends that meet another end, from which on a part is no tree [trees to 0.15, lattices 0.4]
 MEETINGS = 2  # of ends with ends in a part, at least: one is chance, and a quarter of the ends of a small tree
+BLOCK = 256  # ends whose ways are known at a time, to bound memory
 FACING = 0.0  # cosine of the end's direction to what it meets, at least
 
 
@@ -65,14 +66,13 @@ def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
         return np.zeros((0, 2), np.int32)
     count, (first, second) = len(curve.nodes), curve.edges.T
     graph = sparse.coo_array((np.maximum(curve.lengths, 1e-300), (first, second)), shape=(count, count)).tocsr()
-    along = dijkstra(graph, directed=False, indices=ends)
+    least = np.maximum(DETOUR * links.spacing, RADII * (curve.radii[pairs[:, 0]] + curve.radii[pairs[:, 1]]))
+    along = _ways(graph, pairs, 2 * float(least.max()))
     heading = {int(path[0]): curve.heading(path) for path in curve.paths_from(ends=True)}
     found: dict[int, tuple[float, int]] = {}
-    for end, node in pairs.tolist():
+    for (end, node), far, detour in zip(pairs.tolist(), least.tolist(), along.tolist(), strict=True):
         way = curve.nodes[node] - curve.nodes[end]
         apart = float(np.linalg.norm(way))
-        far = max(DETOUR * links.spacing, RADII * float(curve.radii[end] + curve.radii[node]))
-        detour = float(along[np.searchsorted(ends, end), node])
         if far < detour < np.inf and float(heading[end] @ way) >= FACING:
             found[end] = min(found.get(end, (apart, node)), (apart, node))
     # An end that another end has met already is closed.
@@ -84,3 +84,19 @@ def _meetings(curve: ConeCurve, sections: Sections, links: Links) -> Edges:
             met.append((end, meets))
             taken |= {end} | ({meets} if curve.degrees[meets] == 1 else set())
     return np.array(met, np.int32).reshape(-1, 2)
+
+
+def _ways(graph: sparse.csr_array, pairs: Edges, most: float) -> Numbers:
+    """Return the length of the way between the nodes of pairs (p, 2), ordered by the first; inf where there is none.
+
+    Of longer ways than most it is enough to know that they are.
+    """
+    part = connected_components(graph, directed=False)[1]
+    out = np.empty(len(pairs))
+    starts = np.unique(pairs[:, 0])
+    for some in np.array_split(starts, -(-len(starts) // BLOCK)):
+        mine = np.isin(pairs[:, 0], some)
+        rows = np.searchsorted(some, pairs[mine, 0])
+        out[mine] = dijkstra(graph, directed=False, indices=some, limit=most)[rows, pairs[mine, 1]]
+    joined = part[pairs[:, 0]] == part[pairs[:, 1]]
+    return np.where(joined & np.isinf(out), most, np.where(joined, out, np.inf))

@@ -12,11 +12,13 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.geometry.cells import numbered
 from tiskel.methods.robust.wire.links import Links
 
 # Found by trial on generated trees; 1.5 to 3 all work, 1 cuts corners.
 POWER = 2.0  # exponent of the length of a link in its weight
 STEP = 1e-6  # spacings: a step counts as no less, so that ways grow with every one, by more than sums are rounded
+FINER = 4  # cells of its reach that count the most a crowd may be
 CROWD = 0.03  # share of the diagonal about a point: the root has most points so near, which finds trunks and somas
 
 
@@ -55,9 +57,8 @@ def routes_of(points: Points, links: Links, root: Numbers | None) -> Routes:
 
 def _roots(points: Points, part: Indices, root: Numbers | None) -> Indices:
     diagonal = float(np.linalg.norm(np.ptp(points[part >= 0], axis=0)))
-    tree = cKDTree(points[part >= 0])
     crowd = np.zeros(len(points), int)
-    crowd[part >= 0] = tree.query_ball_point(points[part >= 0], CROWD * diagonal, return_length=True)
+    crowd[part >= 0] = _crowds(points[part >= 0], part[part >= 0], CROWD * diagonal)
     nearest = -1 if root is None else int(((points - root) ** 2).sum(axis=1).argmin())
     roots = []
     for number in np.argsort(-np.bincount(part[part >= 0]), kind="stable"):
@@ -66,6 +67,33 @@ def _roots(points: Points, part: Indices, root: Numbers | None) -> Indices:
             given = nearest >= 0 and part[nearest] == number
             roots.append(nearest if given else _most_crowded(points, rows, crowd[rows]))
     return np.array(roots, np.int32)
+
+
+def _crowds(points: Points, part: Indices, reach: float) -> Indices:
+    """Return (n,) how many points are within reach of each, 0 where a part's largest number cannot be.
+
+    No more are within reach than in the cells about. Those with most there are
+    asked first, then all that may have as many as the best of these.
+    """
+    corner, cell = numbered(np.floor((points - points.min(axis=0)) * (FINER / reach)).astype(np.int64))
+    tree, centres = cKDTree(points), cKDTree(corner)
+    near = centres.query_pairs(FINER + np.sqrt(3), output_type="ndarray")  # no point beyond is within reach
+    held = np.bincount(cell)
+    most = (
+        held
+        + np.bincount(near[:, 0], held[near[:, 1]], len(held))
+        + np.bincount(near[:, 1], held[near[:, 0]], len(held))
+    )
+    bound, crowd = most[cell], np.zeros(len(points), int)
+    largest = np.zeros(int(part.max()) + 1)
+    np.maximum.at(largest, part, bound)
+    first = np.flatnonzero(bound >= largest[part])
+    crowd[first] = tree.query_ball_point(points[first], reach, return_length=True)
+    best = np.zeros_like(largest)
+    np.maximum.at(best, part, crowd)
+    rest = np.flatnonzero((bound >= best[part]) & (bound < largest[part]))
+    crowd[rest] = tree.query_ball_point(points[rest], reach, return_length=True)
+    return crowd
 
 
 def _most_crowded(points: Points, rows: Indices, crowd: Indices) -> int:
