@@ -39,6 +39,7 @@ def judged(cloud: Points, graph: CurveGraph) -> Judged:
     return Judged(
         graph=graph, points=cloud, normals=network.normals @ network.axes, spacings=network.spacings,
         node_of_point=node, contracted=graph.nodes[node], left_out=np.zeros(len(cloud), bool), solid=solid,
+        axes=network.axes,
     )  # fmt: skip
 
 

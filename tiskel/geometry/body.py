@@ -149,13 +149,15 @@ def body_of(winding: Stack, origin: Numbers, step: float, points: Points, level:
     -------
     Body or None
     """
+    from tiskel.kernels.runtime import requested_threads
+
     if int((winding > level).sum()) > MOST_CELLS:
         winding, step = winding[::2, ::2, ::2], 2 * step
     inside = _whole(np.pad(winding > level, 1))[1:-1, 1:-1, 1:-1]
     if not inside.any():
         return None
     cells = np.argwhere(inside)
-    to_points = cKDTree(points).query(origin + cells * step)[0]
+    to_points = cKDTree(points).query(origin + cells * step, workers=requested_threads())[0]
     to_outside = step * ndimage.distance_transform_edt(np.pad(inside, 1))[1:-1, 1:-1, 1:-1][inside]
     winding = np.where(inside & (winding <= level), 1.0, winding)
     return Body(inside, level, winding, origin, step, cells.astype(np.int32), np.minimum(to_points, to_outside))

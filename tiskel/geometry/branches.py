@@ -1,7 +1,5 @@
 """Branches of a graph: the ways from junction or end to junction or end."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from tiskel.arrays import Indices
@@ -21,27 +19,26 @@ def branches_of(around: list[list[int]]) -> tuple[Indices, ...]:
         From stop to stop, a stop being a node with other than two neighbours; loops without one begin and end at
         the same node.
     """
-    stops = [node for node in range(len(around)) if len(around[node]) != 2]
-    used: set[tuple[int, int]] = set()
+    stops = [node for node, others in enumerate(around) if len(others) != 2]
+    walked: set[tuple[int, int]] = set()  # the other ends of branches, and the node before
+    seen = bytearray(len(around))  # of nodes between stops
     found = [[node] for node in stops if not around[node]]
-    for start in [*stops, *range(len(around))]:  # what no stop reaches is a loop of its own
+    for start in stops:
         for first in around[start]:
-            if (start, first) not in used and (start in stops or not _visited(start, around, used)):
-                found.append(list(_walk(start, first, around, used)))
+            if (start, first) not in walked:
+                found.append(_walk(start, first, around, seen))
+                walked.add((found[-1][-1], found[-1][-2]))
+    for start, others in enumerate(around):  # what no stop reaches is a loop of its own
+        if len(others) == 2 and not seen[start]:
+            found.append(_walk(start, others[0], around, seen))
     return tuple(np.array(branch, np.int32) for branch in found)
 
 
-def _visited(node: int, around: list[list[int]], used: set[tuple[int, int]]) -> bool:
-    return any((node, other) in used for other in around[node])
-
-
-def _walk(start: int, first: int, around: list[list[int]], used: set[tuple[int, int]]) -> Iterator[int]:
+def _walk(start: int, first: int, around: list[list[int]], seen: bytearray) -> list[int]:
     """Follow nodes of degree two from a start until a stop, or back to the start."""
-    previous, at = start, first
-    yield start
-    while True:
-        used.update({(previous, at), (at, previous)})
-        yield at
-        if len(around[at]) != 2 or at == start:
-            return
-        previous, at = at, next(other for other in around[at] if other != previous)
+    way, previous, at = [start, first], start, first
+    while at != start and len(others := around[at]) == 2:
+        seen[at] = 1
+        previous, at = at, others[1] if others[0] == previous else others[0]
+        way.append(at)
+    return way

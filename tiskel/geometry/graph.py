@@ -111,11 +111,10 @@ class CurveGraph:
     @cached_property
     def neighbours(self) -> list[list[int]]:
         """The neighbours of every node, ascending."""
-        around: list[list[int]] = [[] for _ in range(len(self.nodes))]
-        for a, b in self.edges.tolist():
-            around[a].append(b)
-            around[b].append(a)
-        return [sorted(others) for others in around]
+        first, second = np.concatenate([self.edges, self.edges[:, ::-1]]).T
+        order = np.lexsort((second, first))
+        others, stops = second[order].tolist(), np.cumsum(np.bincount(first, minlength=len(self.nodes))).tolist()
+        return [others[start:stop] for start, stop in zip([0, *stops], stops, strict=False)]
 
     @cached_property
     def passages(self) -> Lists:
@@ -164,8 +163,9 @@ def tidy_edges(edges: Edges) -> Edges:
     (f, 2) int32
         In ascending order.
     """
-    ordered = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
-    return np.unique(ordered[ordered[:, 0] != ordered[:, 1]], axis=0).reshape(-1, 2)
+    a, b = np.asarray(edges, np.int64).reshape(-1, 2).T
+    keys = np.unique((np.minimum(a, b) << 32 | np.maximum(a, b))[a != b])
+    return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
 
 
 def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:

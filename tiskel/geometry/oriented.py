@@ -120,14 +120,15 @@ def oriented_cloud(points: Points, targets: Points, seed: int = 0) -> OrientedCl
     near = np.ascontiguousarray(neighbours[:, :NORMAL_NEIGHBOURS])
     normals = principal_axes(points, near)[1][:, 2]
     areas = ring_areas(points, rings)
-    made = oriented_either_way(points, normals, areas, targets, near, seed=seed)
-    return max(made, key=lambda surface: surface.consistency)
+    away = oriented_away(points, normals, areas, targets, seed)
+    propagated = oriented_by_propagation(points, normals, areas, targets, near, seed)
+    return max(away, propagated, key=lambda surface: surface.consistency)
 
 
-def oriented_either_way(
-    points: Points, normals: Points, areas: Numbers, targets: Points, near: Lists, *, seed: int = 0
-) -> tuple[OrientedCloud, OrientedCloud]:
-    """Return a surface with normals away from the targets, and with propagated ones; the consistency of both is known.
+def oriented_away(
+    points: Points, normals: Points, areas: Numbers, targets: Points, seed: int = 0
+) -> OrientedCloud:  # fmt: skip
+    """Return a surface with normals away from the targets; its consistency is known.
 
     Parameters
     ----------
@@ -139,25 +140,37 @@ def oriented_either_way(
         The area that each point stands for, in the squared unit.
     targets : (n, 3) float64
         Where each point contracts to, in the same unit.
-    near : (n, k) int32
-        The nearest of every point, itself first, along which normals are propagated.
     seed : int
-        Of the choice of points that the orientations are tried on.
+        Of the choice of points that the orientation is tried on.
 
     Returns
     -------
-    tuple of OrientedCloud
+    OrientedCloud
     """
-    outward = np.einsum("ij,ij->i", points - targets, normals)
-    by_skeleton = np.where(outward < 0, -1.0, 1.0)
+    sign = np.where(np.einsum("ij,ij->i", points - targets, normals) < 0, -1.0, 1.0)
+    return checked(OrientedCloud(points, normals * sign[:, None], areas, "skeleton"), seed)
+
+
+def oriented_by_propagation(
+    points: Points, normals: Points, areas: Numbers, targets: Points, near: Lists, seed: int = 0
+) -> OrientedCloud:  # fmt: skip
+    """Return a surface with normals that agree along it and point away from the targets in the mean.
+
+    Parameters
+    ----------
+    points, normals, areas, targets, seed
+        See :func:`oriented_away`.
+    near : (n, k) int32
+        The nearest of every point, itself first, along which normals are propagated.
+
+    Returns
+    -------
+    OrientedCloud
+    """
     sign, part = propagated_signs(near, normals)
-    votes = np.bincount(part, areas * outward * sign)
-    by_propagation = sign * np.where(votes < 0, -1.0, 1.0)[part]
-    one, other = (
-        checked(OrientedCloud(points, normals * sign[:, None], areas, name), seed)
-        for name, sign in (("skeleton", by_skeleton), ("propagation", by_propagation))
-    )
-    return one, other
+    votes = np.bincount(part, areas * np.einsum("ij,ij->i", points - targets, normals) * sign)
+    sign = sign * np.where(votes < 0, -1.0, 1.0)[part]
+    return checked(OrientedCloud(points, normals * sign[:, None], areas, "propagation"), seed)
 
 
 def places_inside(surface: OrientedCloud, places: Points) -> Mask | None:

@@ -167,5 +167,6 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
         contracted=contracted,
         left_out=left_out,
         solid=best.solid,
+        axes=network.axes,
     )
     return MethodCurve(graph, node[trace.survivor_of()], contracted, doubts_of(judged))

@@ -33,16 +33,18 @@ OFF_DEVIATIONS = 4.0  # the same in standard deviations of the fit [0, 0; for de
 MISSED = 0.5  # local radii that a missed branch sticks out at least, unless by its own radius [2, 0]
 MOST = 0.9  # of the points of a missed branch, whose distance from its axis is its radius
 RIDGE = 1.5  # local radii along the curve: longer is the rim of a flat part, no branch [0, 0; for uneven density]
+BRANCHES = 64  # whose points are placed at a time: their lists of edges are as long as the longest
 FEWEST = 12  # points of a missed branch [1, 0]
 
 
 def without_spurs(curve: ConeCurve, points: Points, sections: Sections) -> ConeCurve:
     """Contract, the shortest first, branches whose points do not even leave the ball of their junction."""
     while True:
-        spurs, owner = [], curve.node_of_section[sections.section]
+        spurs = []
+        own, stops = _rows_of_nodes(curve.node_of_section[sections.section], len(curve.nodes))
         for path in curve.paths_from(ends=True):
             joint = int(path[-1])
-            rows = np.flatnonzero(np.isin(owner, path[:-1]))
+            rows = np.concatenate([own[stops[node] : stops[node + 1]] for node in path[:-1]])
             if curve.degrees[joint] > 2 and len(rows):
                 others = [curve.radii[node] for node in curve.neighbours[joint] if node != path[-2]]
                 radius = max(min(float(curve.radii[joint]), float(np.mean(others))), TINY)
@@ -78,16 +80,14 @@ def without_explained_branches(
     other. least is what a branch has to stick out, in the smaller of its radius
     and its junction's.
     """
-    branches, degree = [], curve.degrees
-    rows, stops = _rows_of_nodes(curve.node_of_section[sections.section], len(curve.nodes))
-    for path in curve.paths_from(ends=True):
-        if degree[path[-1]] > 2:
-            radius = min(float(curve.radii[path[:-1]].max()), float(curve.radii[path[-1]]))
-            asked = max(least * radius, STICKS_OUT_SPACINGS * network.spacing)
-            own = [rows[stops[node] : stops[node + 1]] for node in path]
-            share = _protrusion(curve, network.points, own, path) / asked
-            if share < 1:
-                branches.append((share, int(path[0]), path))
+    degree = curve.degrees
+    paths = [path for path in curve.paths_from(ends=True) if degree[path[-1]] > 2]
+    branches = []
+    for path, out in zip(paths, _protrusions(curve, network.points, sections, paths), strict=True):
+        radius = min(float(curve.radii[path[:-1]].max()), float(curve.radii[path[-1]]))
+        share = out / max(least * radius, STICKS_OUT_SPACINGS * network.spacing)
+        if share < 1:
+            branches.append((share, int(path[0]), path))
     into, chosen = np.arange(len(curve.nodes), dtype=np.int32), list[tuple[Numbers, float]]()
     for _, _, path in sorted(branches, key=lambda branch: branch[:2]):
         centre = curve.nodes[path].mean(axis=0)
@@ -104,26 +104,40 @@ def _rows_of_nodes(owner: Indices, count: int) -> tuple[Indices, Indices]:
     return order, np.searchsorted(owner[order], np.arange(count + 1)).astype(np.int32)
 
 
-def _protrusion(curve: ConeCurve, points: Points, own: list[Indices], path: Indices) -> float:
-    """Return how far the points of a branch lie from the surface of the rest, 0 where it has none.
+def _protrusions(curve: ConeCurve, points: Points, sections: Sections, paths: list[Indices]) -> list[float]:
+    """Return how far the points of each branch lie from the surface of the rest, 0 where it has none."""
+    order, stops = _rows_of_nodes(curve.node_of_section[sections.section], len(curve.nodes))
+    own = [_own_rows(curve, points, [order[stops[node] : stops[node + 1]] for node in path], path) for path in paths]
+    rest = [_possible(curve, path, points[rows]) for path, rows in zip(paths, own, strict=True)]
+    out = [np.inf if len(rows) else 0.0 for rows in own]
+    asked = [i for i in range(len(paths)) if len(own[i]) and len(rest[i])]
+    for some in np.array_split(asked, -(-len(asked) // BRANCHES)) if asked else []:
+        candidates = np.full((len(some), max(len(rest[i]) for i in some)), -1, np.int32)
+        for place, i in enumerate(some):
+            candidates[place, : len(rest[i])] = rest[i]
+        sizes = [len(own[i]) for i in some]
+        lists = np.repeat(np.arange(len(some), dtype=np.int32), sizes)
+        rows = np.concatenate([own[i] for i in some])
+        found = foot_points(curve, points, rows, lists, candidates, signed=True).residual
+        for i, residual in zip(some, np.split(found, np.cumsum(sizes)[:-1]), strict=True):
+            out[i] = float(np.quantile(residual, FARTHEST))
+    return out
 
-    own are the rows of the cloud of every node of the path.
-    """
+
+def _own_rows(curve: ConeCurve, points: Points, own: list[Indices], path: Indices) -> Indices:
+    """Return the rows of the cloud that are a branch's; own are those of every node of its path."""
     at_joint = own[-1]
     near = np.linalg.norm(points[at_joint] - curve.nodes[path[0]], axis=1) < HANGING * curve.radii[path[0]]
-    rows = np.sort(np.concatenate([*own[:-1], at_joint[near]]))
-    rest: Indices = np.flatnonzero(~np.isin(curve.edges, path[:-1]).any(axis=1)).astype(np.int32)
-    if not len(rows):
-        return 0.0
-    if not len(rest):
-        return np.inf
-    rest = _possible(curve, rest, points[rows])
-    one_list = np.zeros(len(rows), np.int32)
-    return float(np.quantile(foot_points(curve, points, rows, one_list, rest[None], signed=True).residual, FARTHEST))
+    return np.sort(np.concatenate([*own[:-1], at_joint[near]]))
 
 
-def _possible(curve: ConeCurve, edges: Indices, points: Points) -> Indices:
-    """Return the edges whose cones may be the deepest about some of the points (n, 3): no other is for any."""
+def _possible(curve: ConeCurve, path: Indices, points: Points) -> Indices:
+    """Return the edges off a path whose cones may be the deepest about some points (n, 3): no other is for any."""
+    there = np.ones(len(curve.nodes), np.bool_)
+    there[path[:-1]] = False
+    edges: Indices = np.flatnonzero(there[curve.edges].all(axis=1)).astype(np.int32)
+    if not len(points) or not len(edges):
+        return edges
     centre = points.mean(axis=0)
     extent = float(np.linalg.norm(points - centre, axis=1).max())
     ends, radii = curve.nodes[curve.edges[edges]], curve.radii[curve.edges[edges]]

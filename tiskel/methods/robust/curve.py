@@ -94,9 +94,9 @@ def contract_nodes(curve: ConeCurve, into: Indices, *, mean: bool = False) -> Co
 
 def _bridged(renamed: Edges, curve: ConeCurve) -> Mask:
     """Return which edges are bridges under new names of their nodes: those that stand for nothing but bridges."""
-    ordered = np.sort(renamed, axis=1)
-    apart = ordered[:, 0] != ordered[:, 1]
-    edges, number = np.unique(ordered[apart], axis=0, return_inverse=True)
+    a, b = renamed.astype(np.int64).T
+    apart = a != b
+    edges, number = np.unique((np.minimum(a, b) << 32 | np.maximum(a, b))[apart], return_inverse=True)
     measured = np.bincount(number.ravel(), ~curve.bridged[apart], minlength=len(edges))
     return np.asarray(measured == 0)
 

@@ -85,7 +85,7 @@ def _in_air(j: Judged) -> CurveWarning | None:
 
 
 def _outside(j: Judged) -> CurveWarning | None:
-    if j.thick.mean() <= levels.OUTSIDE_SHARE:
+    if j.thick.mean() <= levels.OUTSIDE_SHARE or _surely_inside(j):
         return None
     step = -(-len(j.points) // levels.SURFACE_POINTS)
     points, contracted = (np.ascontiguousarray(rows[::step]) for rows in (j.points, j.contracted))
@@ -98,6 +98,14 @@ def _outside(j: Judged) -> CurveWarning | None:
         return None
     text = "{share} of the curve lies outside the body"
     return _doubt("outside", text, float((~inside).mean()), j.samples.points[clearly])
+
+
+def _surely_inside(j: Judged) -> bool:
+    """Tell whether so little of the curve is outside the solid that normals oriented anew would not say otherwise."""
+    if not j.solid.trusted:
+        return False
+    outside = ~j.solid.oriented.contains(j.samples.points @ j.axes.T) & j.thick
+    return bool(outside.mean() <= levels.OUTSIDE_SURELY_NOT)
 
 
 def _loops(j: Judged) -> CurveWarning | None:

@@ -156,15 +156,19 @@ def _step(fit: ConeFit, points: Points, start: Points, straightness: float, fixe
     held = np.tile([DAMPING + HOLD] * 3 + [DAMPING], count) * heavy
     if fixed is not None:
         held.reshape(count, 4)[fixed, :3] = FIXED * heavy
-    matrix = sparse.diags_array(held, format="csc")
     right = np.zeros(4 * count)
     right.reshape(count, 4)[:, :3] = HOLD * heavy * (start - fit.curve.nodes)
+    everyone = np.arange(4 * count)
+    values, rows, columns = [held], [everyone], [everyone]
     for unknowns, blocks, sides in terms:
         width = unknowns.shape[1]
-        where = np.repeat(unknowns, width, axis=1).ravel(), np.tile(unknowns, (1, width)).ravel()
-        matrix = matrix + sparse.coo_array((blocks.ravel(), where), shape=matrix.shape).tocsc()
+        values.append(blocks.ravel())
+        rows.append(np.repeat(unknowns, width, axis=1).ravel())
+        columns.append(np.tile(unknowns, (1, width)).ravel())
         right += np.bincount(unknowns.ravel(), sides.ravel(), minlength=len(right))
-    return BACKENDS["scipy"](matrix.tocsc())(right).reshape(count, 4)
+    where = np.concatenate(rows), np.concatenate(columns)
+    matrix = sparse.coo_array((np.concatenate(values), where), shape=(4 * count, 4 * count)).tocsc()
+    return BACKENDS["scipy"](matrix)(right).reshape(count, 4)
 
 
 Term = tuple[Pairs, Stack, Table]  # unknowns (t, k), blocks (t, k, k) of the matrix, right-hand sides (t, k)
@@ -172,19 +176,20 @@ Term = tuple[Pairs, Stack, Table]  # unknowns (t, k), blocks (t, k, k) of the ma
 
 def _data(fit: ConeFit, points: Points) -> Term:
     """Return the residuals' share of the normal equations, summed by edge."""
+    from tiskel.kernels.cone_sums import summed_products
+
     out = points[fit.rows] - fit.places
     # A point on the axis pulls in no direction.
     out /= np.maximum(np.linalg.norm(out, axis=1), 1e-9 * fit.curve.radii.max())[:, None]
     one, other = (1 - fit.share)[:, None], fit.share[:, None]
     slope = -np.concatenate([one * out, one, other * out, other], axis=1)
     weight = 1 / np.maximum(1, np.abs(fit.residual) / max(OUTLYING * fit.deviation, TINY))
-    order = np.argsort(fit.edge, kind="stable")
+    order = np.argsort(fit.edge, kind="stable").astype(np.int32)
     edge, starts = np.unique(fit.edge[order], return_index=True)
-    weighted = (weight[:, None] * slope)[order]
-    blocks = np.add.reduceat(weighted[:, :, None] * slope[order][:, None, :], starts)
-    sides = -np.add.reduceat(weighted * fit.residual[order, None], starts)
+    blocks, sides = np.zeros((len(edge), 8, 8)), np.zeros((len(edge), 8))
+    summed_products(slope, weight, fit.residual, order, np.append(starts, len(order)).astype(np.int32), blocks, sides)
     ends = fit.curve.edges[edge]
-    return np.concatenate([4 * ends[:, :1] + np.arange(4), 4 * ends[:, 1:] + np.arange(4)], axis=1), blocks, sides
+    return np.concatenate([4 * ends[:, :1] + np.arange(4), 4 * ends[:, 1:] + np.arange(4)], axis=1), blocks, -sides
 
 
 def _smoothness(curve: ConeCurve, heavy: float, straightness: float) -> list[Term]:

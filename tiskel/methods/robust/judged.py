@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Indices, Mask, Numbers, Points, Table
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.solid import Solid
@@ -34,6 +34,8 @@ class Judged:
         Points in small parts that have no curve.
     solid : Solid
         The body inside the cloud, trusted or not.
+    axes : (3, 3) float64
+        Of the solid, as rows: its coordinates are those of the curve @ axes.T.
     """
 
     graph: CurveGraph
@@ -44,6 +46,7 @@ class Judged:
     contracted: Points
     left_out: Mask
     solid: Solid
+    axes: Table
 
     @cached_property
     def spacing(self) -> float:

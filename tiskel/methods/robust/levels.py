@@ -14,6 +14,7 @@ AIR_SERIOUS = 0.02  # of the length that is in the air even so: from there on it
 CLEARLY_OUTSIDE = 0.25  # winding number; holes in the scan take some away from places inside
 THICK = 2.0  # spacings in a radius; where nothing is thicker there is no inside to speak of
 OUTSIDE_SHARE = 0.05  # of the places outside the body
+OUTSIDE_SURELY_NOT = OUTSIDE_SHARE / 2  # the same by the solid that the curve was made with: nobody looks twice
 FAR_RADII = 2.5  # radii of the curve; a flattened limb of 4 : 1 reaches twice its mean half-width
 FAR_SPACINGS = 3.0  # spacings on top of these: points are noisy
 FAR_SHARE = 0.02  # of the points so far away

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Points, Table
 from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
-from tiskel.geometry.oriented import OrientedCloud, oriented_either_way
+from tiskel.geometry.oriented import OrientedCloud, oriented_away, oriented_by_propagation
 from tiskel.geometry.rings import Rings
 from tiskel.geometry.spacing import spacings_from
 
@@ -20,6 +20,7 @@ NORMAL_NEIGHBOURS = 12  # points, itself included, whose plane gives a point's n
 AREA_NEIGHBOURS = 8  # points in the disc about a point that gives its area [1, 0]
 FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour [10, 4]
 FEWER = 0.5  # of the points without an inside and an outside that propagated normals leave, to be taken
+SURE = 0.99  # of the points between an inside and an outside: propagated normals could do no better
 ALONG_NORMALS = 0.75  # cosine to both normals: such a step leaves the surface at both of its ends [13, 11]
 
 
@@ -107,7 +108,10 @@ class Network:
         if self.surface is not None and self.surface.outward:
             return OrientedCloud(self.points, self.normals, self.areas)
         near = np.ascontiguousarray(self.neighbours[:, :NORMAL_NEIGHBOURS])
-        away, propagated = oriented_either_way(self.points, self.normals, self.areas, contracted, near)
+        away = oriented_away(self.points, self.normals, self.areas, contracted)
+        if away.consistency >= SURE:
+            return away
+        propagated = oriented_by_propagation(self.points, self.normals, self.areas, contracted, near)
         return propagated if 1 - propagated.consistency <= FEWER * (1 - away.consistency) else away
 
 
@@ -119,7 +123,8 @@ def own_axes(points: Points) -> Table:
     """
     offset = points - points.mean(axis=0)
     axes = np.linalg.eigh(offset.T @ offset)[1].T
-    return np.asarray(axes * np.where(((offset @ axes.T) ** 3).sum(axis=0) < 0, -1.0, 1.0)[:, None])
+    turned = offset @ axes.T
+    return np.asarray(axes * np.where((turned * turned * turned).sum(axis=0) < 0, -1.0, 1.0)[:, None])
 
 
 def prepared(points: Points, k: int, surface: MeshSurface | None = None) -> Network:

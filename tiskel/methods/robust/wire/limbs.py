@@ -85,8 +85,8 @@ def crowding(levels: Levels, limbs: Limbs, spacing: float) -> float:
 def _beside(levels: Levels, owner: Indices, section: int) -> int:
     """Return the nearest section on a limb that is within reach of a section or stands for one that is; -1 for none."""
     found = sorted({int(owner[other]) for other in levels.beside[section] if owner[other] >= 0})
-    if not found:
-        return -1
+    if len(found) < 2:
+        return found[0] if found else -1
     away = ((levels.centres[found] - levels.centres[section]) ** 2).sum(axis=1)
     return found[int(away.argmin())]
 
@@ -97,6 +97,8 @@ def _own(linked: Mask, step: np.ndarray[tuple[int], np.dtype[np.float64]]) -> in
     The rest begins beside one, and enough of it runs so; a chance contact
     nearer to the tip does not end the limb.
     """
+    if not linked.any():
+        return len(linked)
     left = np.cumsum(step[::-1])[::-1]
     beside = np.cumsum((linked * step)[::-1])[::-1]
     ends = np.flatnonzero(linked & (beside >= BESIDE * left))
