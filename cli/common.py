@@ -76,6 +76,8 @@ def _with_settings(command: Command, settings: Mapping[str, tuple[Any, Any]], na
         given = {key: value for key in settings if (value := arguments.pop(key)) is not None}
         for key in set(method_options.PLACES) & set(given):
             given[key] = surface_options.three(f"--{key.replace('_', '-')}", given[key])
+        if "max_points" in given:
+            given["max_points"] = method_options.so_many("--max-points", given["max_points"])
         command(**arguments, **{name: given})
 
     return _with_options(command, run, settings, drop=(name,))

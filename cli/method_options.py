@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tiskel.params import GlsParams, LbcParams, Normalisation, RegimeChoice, RobustParams, Solver, Topology
+from tiskel.params import GlsParams, LbcParams, MaxPoints, Normalisation, RegimeChoice, RobustParams, Solver, Topology
 
 ROBUST, GLS, LBC = RobustParams(), GlsParams(), LbcParams()
 PUBLISHED = "gls and lbc"
@@ -48,8 +48,8 @@ CONTRACTING: dict[str, Option] = {
     ),
     "max_points": (
         _setting(
-            int, "N", "Points that fronts run over at most; the others go with the nearest. 0: all. Not given: what "
-            "the surface of a large cloud needs", "robust", None,
+            str, "N|auto|all", "Points that fronts run over at most, the others go with the nearest: so many, as many "
+            "as the surface of a large cloud needs, or all", "robust", ROBUST.max_points,
         ), None,
     ),
     "least_part": (
@@ -124,3 +124,13 @@ CURVING: dict[str, Option] = {
     "rounds": (_setting(int, "N", "Rounds of the fit of round cones to the points", "robust", ROBUST.rounds), None),
 }  # fmt: skip
 PLACES = ("root", "seen_from")  # options whose value is a place, written as x,y,z
+
+
+def so_many(name: str, value: str) -> MaxPoints:
+    """Return a number of points, or one of the words for it; raise where it is neither."""
+    words: dict[str, MaxPoints] = {"auto": "auto", "all": "all"}
+    if value in words:
+        return words[value]
+    if not (value.isascii() and value.isdigit()):
+        raise typer.BadParameter(f"{name} must be auto, all or a whole number, got {value!r}")
+    return int(value)

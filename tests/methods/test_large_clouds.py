@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from reference.fixtures import Runner
 from tiskel import (
     RobustParams,
     ShapeParams,
@@ -17,8 +18,10 @@ from tiskel import (
     write_contraction,
 )
 from tiskel.arrays import Points
+from tiskel.errors import TiskelError
 from tiskel.methods.robust.thinning import ENOUGH, thinned
 from tiskel.metrics.truth import agreement
+from tiskel.params import MaxPoints
 
 RADIUS = 0.1
 
@@ -61,7 +64,8 @@ def test_a_noisy_trunk_is_one_strand(noise: float) -> None:
 
 def test_small_clouds_stay_as_they_are_and_all_can_be_asked_for() -> None:
     points = tube(ENOUGH, 1.0)
-    for cloud, most in ((points, None), (np.concatenate([points, points + 9]), 0)):
+    choices: list[tuple[Points, MaxPoints]] = [(points, "auto"), (np.concatenate([points, points + 9]), "all")]
+    for cloud, most in choices:
         same = thinned(cloud, most)
         assert same.points is cloud
         np.testing.assert_array_equal(same.rows, np.arange(len(cloud)))
@@ -69,7 +73,7 @@ def test_small_clouds_stay_as_they_are_and_all_can_be_asked_for() -> None:
 
 def test_every_point_goes_into_one_mean_and_a_mean_goes_by_the_nearest() -> None:
     points = tube(30_000, 1.0, 0.05)
-    few = thinned(points, None)
+    few = thinned(points, "auto")
     assert 200 < len(few.rows) < 10_000
     np.testing.assert_array_equal(few.place[few.rows], np.arange(len(few.rows)))
     away = np.linalg.norm(points - few.points[few.place], axis=1)
@@ -84,7 +88,7 @@ def test_every_point_goes_into_one_mean_and_a_mean_goes_by_the_nearest() -> None
 def test_a_twig_beside_a_thick_trunk_keeps_its_points() -> None:
     """The twig is as thick as the points are apart, the trunk a hundred times; a grid for both would lose one."""
     trunk, twig = tube(40_000, 3.0, radius=0.5), tube(60, 1.0, radius=0.008) + [2.0, 0, 1.0]
-    few = thinned(np.concatenate([trunk, twig]), None)
+    few = thinned(np.concatenate([trunk, twig]), "auto")
     assert (few.rows < 40_000).sum() < 20_000
     assert (few.rows >= 40_000).sum() > 55
 
@@ -92,14 +96,14 @@ def test_a_twig_beside_a_thick_trunk_keeps_its_points() -> None:
 def test_two_sheets_stay_apart() -> None:
     """No mean lies between two coaxial tubes, five spacings apart."""
     inner, outer = tube(30_000, 1.0), tube(30_000, 1.0, radius=RADIUS * 1.25, seed=1)
-    out = np.linalg.norm(thinned(np.concatenate([inner, outer]), None).points[:, :2], axis=1)
+    out = np.linalg.norm(thinned(np.concatenate([inner, outer]), "auto").points[:, :2], axis=1)
     assert (np.abs(out / RADIUS - 1.125) > 0.05).all()
 
 
 def test_turning_and_scaling_change_no_choice_and_files_say_the_same(tmp_path: Path) -> None:
     points = tube(25_000, 1.0, 0.05)
-    few = thinned(points, None)
-    turned = thinned(3 * points @ Rotation.from_rotvec([1, 2, 3]).as_matrix().T + 5, None)
+    few = thinned(points, "auto")
+    turned = thinned(3 * points @ Rotation.from_rotvec([1, 2, 3]).as_matrix().T + 5, "auto")
     np.testing.assert_array_equal(few.rows, turned.rows)
     c = contract(np.concatenate([points, points[:50]]))  # with duplicates
     write_contraction(tmp_path / "c.ply", c)
@@ -111,7 +115,32 @@ def test_turning_and_scaling_change_no_choice_and_files_say_the_same(tmp_path: P
 def test_so_many_points_at_most() -> None:
     shape = shape_graph("hand")
     cloud = make_shape(shape, ShapeParams(count=30_000))[0]
-    assert len(thinned(cloud, 5000).rows) <= 5000 < len(thinned(cloud, None).rows)
+    assert len(thinned(cloud, 5000).rows) <= 5000 < len(thinned(cloud, "auto").rows)
     c = contract(cloud, RobustParams(max_points=5000))
     assert len(c.points) <= 5000
     assert agreement(extract_skeleton(c), shape).topology_right
+
+
+def test_who_thins_says_so() -> None:
+    cloud = tube(30_000, 1.0)
+    s = extract_skeleton(contract(cloud))
+    assert [note.code for note in s.notes] == ["thinned"]
+    assert f"of the {len(cloud)} points" in str(s.notes[0])
+    assert not extract_skeleton(contract(tube(3000, 1.0))).notes
+
+
+@pytest.mark.parametrize("value", ["some", -1, 0, 3, 2.5, True, None], ids=str)
+def test_max_points_is_a_number_of_points_or_a_word(value: object) -> None:
+    with pytest.raises(TiskelError, match="max_points must be auto, all or a whole number of at least 10"):
+        RobustParams(max_points=value)  # type: ignore[arg-type]
+
+
+def test_the_command_takes_words_and_numbers(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
+    for value, expected in (("auto", "auto"), ("all", "all"), ("5000", 5000)):
+        assert tiskel("contract", cloud, "-o", "c.ply", "--max-points", value).returncode == 0
+        params = read_contraction(tmp_path / "c.ply").params
+        assert isinstance(params, RobustParams)
+        assert params.max_points == expected
+    failed = tiskel("contract", cloud, "-o", "c.ply", "--max-points", "few")
+    assert failed.returncode == 2
+    assert "auto, all or a whole number" in failed.stderr.decode()

@@ -28,3 +28,9 @@ def between(name: str, value: float, low: float, high: float) -> None:
     if not (isfinite(value) and low <= value <= high):
         limits = f"at least {low:g}" if high == inf else f"from {low:g} to {high:g}"
         raise TiskelError(f"{name} must be a number {limits}, got {value}")
+
+
+def so_many(name: str, value: object, words: tuple[str, ...], least: int) -> None:
+    """Raise where a value is neither a whole number of at least so many nor one of the words."""
+    if value not in words and (not isinstance(value, int) or isinstance(value, bool) or value < least):
+        raise TiskelError(f"{name} must be {', '.join(words)} or a whole number of at least {least}, got {value!r}")

@@ -10,7 +10,7 @@ from math import inf
 from typing import Any, Literal, get_args
 
 from tiskel.errors import TiskelError
-from tiskel.params.checks import among, at_least, between, finite
+from tiskel.params.checks import among, at_least, between, finite, so_many
 
 Method = Literal["robust", "gls", "lbc"]
 Normalisation = Literal["side", "diagonal"]
@@ -18,6 +18,7 @@ Solver = Literal["scipy", "cholmod"]
 RegimeChoice = Literal["auto", "tube", "wire"]
 Topology = Literal["auto", "tree", "loops"]
 Place = tuple[float, float, float]
+MaxPoints = int | Literal["auto", "all"]
 
 MIN_POINTS = 10  #: fewer distinct points have no surface to speak of
 SIDE = 1.6  #: length that normalisation gives the longest side or the diagonal [T]
@@ -75,7 +76,7 @@ class RobustParams(ContractionParams):
     max_steps: int = 3  #: fronts of the contraction
     normalise: Normalisation = "side"  #: what is scaled to 1.6: the longest side [T], or the diagonal (Wen et al.)
     resolution: float = 2.5  #: width of a section along the front, in spacings of the points, at least
-    max_points: int | None = None  #: that fronts run over; None: what the surface needs of a large cloud; 0: all
+    max_points: MaxPoints = "auto"  #: that fronts run over: so many, what the surface needs of a large cloud, or all
     least_part: float = 0.005  #: share of the points; smaller separate parts get no curve
     extra_fronts: int = 5  #: from further ends, at most, while the curve is in doubt
     least_branch: float = 0.5  #: of its radius, what a branch sticks out of the rest at least
@@ -94,8 +95,9 @@ class RobustParams(ContractionParams):
         at_least("neighbours", self.neighbours, 4)
         for name in ("max_steps", "rounds"):
             at_least(name, getattr(self, name), 1)
-        for name in ("extra_fronts", "grow_ends", "max_points"):
+        for name in ("extra_fronts", "grow_ends"):
             at_least(name, getattr(self, name), 0)
+        so_many("max_points", self.max_points, ("auto", "all"), MIN_POINTS)
         between("resolution", self.resolution, 0.5, inf)
         between("least_part", self.least_part, 0, 1)
         for name in ("least_branch", "merge_junctions", "bridge_gaps", "straightness"):

@@ -41,7 +41,7 @@ from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
 from tiskel.methods.robust.sheets import flat_share, on_sheets
-from tiskel.methods.robust.thinning import remembered, thinned
+from tiskel.methods.robust.thinning import remembered, thinned, told
 from tiskel.methods.robust.treelike import without_contacts
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
@@ -72,7 +72,7 @@ def contract(
     watch = Stopwatch()
     span.at(0, "neighbours")
     with watch.measure("network"):
-        few = thinned(points, params.max_points if surface is None else 0)  # a mesh was sampled as it needs
+        few = thinned(points, params.max_points if surface is None else "all")  # a mesh was sampled as it needs
         network = prepared(few.points, params.neighbours_for(len(few.points)), surface)
     span.at(0.5, "fronts")
     trace = few.whole(contract_by_fronts(network, few.points, params), points)
@@ -169,4 +169,4 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
         solid=best.solid,
         axes=network.axes,
     )
-    return MethodCurve(graph, node[trace.survivor_of()], contracted, doubts_of(judged))
+    return MethodCurve(graph, node[trace.survivor_of()], contracted, (*doubts_of(judged), *told(trace)))

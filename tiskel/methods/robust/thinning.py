@@ -16,15 +16,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tiskel.arrays import TINY, Indices, Lists, Numbers, Points, Table
+from tiskel.geometry.cells import numbered
+from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
-from tiskel.geometry.spacing import spacings_from
+from tiskel.geometry.spacing import spacing_of
 from tiskel.methods.robust.network import own_axes
 from tiskel.methods.trace import Trace
+from tiskel.params import MaxPoints
 
 # Found by trial on a half torus, trunks with noise of a tenth and a quarter, and shapes of the gallery, 30 000 to
 # 262 144 points.
 ENOUGH = 20_000  # points; clouds of no more are taken as they are, they cost little
-LARGEST = 300_000  # points; of a million, bands of single points were left that looked like wires: taken as they are
+SAMPLED = 8192  # points whose median spacing is that of all, within 2 %
 AROUND = 12  # cells whose points are looked at together, the cell itself included
 FINEST = 2.0  # spacings: side of the smallest cells
 FLAT = 0.02  # ratio of the lesser variances; flatter cells may be larger: their side is a quarter of a tube's radius
@@ -37,6 +40,7 @@ LINEAR = 0.6  # (s1 - s2) / s1 of the root variances: larger is a wire, of which
 MOSTLY = 0.5  # share of the cells about a cell that are linear, from which on it is of a wire
 SIZES = 12  # of cells at most, each twice as large as the last
 FEWEST = 40  # cells of a size; with fewer they are larger than limbs
+HARDLY = 0.5  # of the points left: thinning costs as much as it would save
 CREASE = 0.3  # ratio at a crease, whatever the size of the cells, at most; a right angle has 0.25
 FINER = 2  # sizes that the cells at a crease may be smaller than those about them
 DIGITS = 6  # of distances from a mean in the largest; what is alike to so many is equally far
@@ -74,15 +78,10 @@ class Thinned:
         )  # fmt: skip
 
 
-def thinned(points: Points, most: int | None) -> Thinned:
-    """Return a cloud (n, 3) as its surface needs it.
-
-    most is how many points there are to be at most, None for as many as needed,
-    0 for all that are given.
-    """
+def thinned(points: Points, most: MaxPoints) -> Thinned:
+    """Return a cloud (n, 3) as its surface needs it, of so many points at most, or with all that are given."""
     everyone = np.arange(len(points), dtype=np.int32)
-    untried = most is None and len(points) > LARGEST
-    if most == 0 or untried or len(points) <= (ENOUGH if most is None else min(most, ENOUGH)):
+    if most == "all" or len(points) <= (ENOUGH if most == "auto" else min(most, ENOUGH)):
         return Thinned(points, everyone, everyone)
     own = np.ascontiguousarray((points - points.mean(axis=0)) @ own_axes(points).T)
     ratios, doubt, cells = _sizes(own)
@@ -90,9 +89,23 @@ def thinned(points: Points, most: int | None) -> Thinned:
     while True:
         key = np.take_along_axis(cells, size[None], axis=0)[0] * (len(cells) + 1) + size
         place = np.unique(key, return_inverse=True)[1]
-        if most is None or place.max() < most or size.min() == len(cells) - 1:
+        if most == "auto" and place.max() >= HARDLY * len(points):
+            return Thinned(points, everyone, everyone)
+        if most == "auto" or place.max() < most or size.min() == len(cells) - 1:
             return _means(points, own, _without_slivers(own, place.ravel().astype(np.int32)))
         size = np.minimum(size + 1, len(cells) - 1)
+
+
+def told(trace: Trace) -> tuple[CurveWarning, ...]:
+    """Return the note that a cloud was thinned, nothing where it was not."""
+    given, left = int((trace.merged_step != 0).sum()), len(trace.rows)
+    if left == given:
+        return ()
+    text = (
+        f"the curve was made with {left} means of the {given} points, as many as the surface needs; "
+        "--max-points all takes every point, and longer"
+    )
+    return (CurveWarning("thinned", text, "note", share=1 - left / given),)
 
 
 def remembered(trace: Trace) -> Points:
@@ -124,7 +137,10 @@ def _means(points: Points, own: Points, place: Indices) -> Thinned:
     farthest = np.zeros(len(means))
     np.maximum.at(farthest, place, away)
     away = np.round(away / np.maximum(farthest[place], TINY), DIGITS)  # two points are equally far from their mean
-    order = np.lexsort((*own.T, away, place))
+    least = np.full(len(means), np.inf)
+    np.minimum.at(least, place, away)
+    nearest = np.flatnonzero(away == least[place])
+    order = nearest[np.lexsort((*own[nearest].T, place[nearest]))]
     rows = order[np.unique(place[order], return_index=True)[1]].astype(np.int32)
     by_row = np.argsort(rows, kind="stable").astype(np.int32)
     rank = np.empty(len(rows), np.int32)
@@ -141,28 +157,48 @@ def _sizes(points: Points) -> tuple[Table, Table, Lists]:
     """Return (s, n) for every size of cells how flat it is about each point, its doubt, and each point's cell.
 
     Linear is inf; the doubt is what few points in a volume would have to be
-    multiplied by.
+    multiplied by. The first size, points alone, is looked at only where the
+    next is not flat; elsewhere it counts as no flatter than that.
     """
-    nearest, squares = nearest_neighbours(points, AROUND)
-    spacing = float(np.median(spacings_from(squares)))
-    variances = principal_axes(points, nearest)[0]
-    ratios, cells, many = [_flatness(variances, nearest)], [np.arange(len(points))], [np.full(len(points), AROUND)]
-    corner = np.floor((points - points.min(axis=0)) / (FINEST * spacing)).astype(np.int64)
+    side = FINEST * spacing_of(points, most=SAMPLED)
+    corner = np.floor((points - points.min(axis=0)) / side).astype(np.int64)
     sums = np.concatenate([np.ones((len(points), 1)), points, _products(points)], axis=1)
-    cell = np.arange(len(points))
-    for _ in range(SIZES):
-        corner, into = np.unique(corner, axis=0, return_inverse=True)
-        if len(corner) < FEWEST:
+    cell: Indices = np.arange(len(points), dtype=np.int32)
+    ratios, cells, many = list[Numbers](), [cell], list[Numbers]()
+    for number in range(SIZES):
+        corner, into = numbered(corner)
+        if len(corner) < FEWEST and number:
             break
-        into = into.ravel()
         sums = np.stack([np.bincount(into, x, minlength=len(corner)) for x in sums.T], axis=1)
         cell = into[cell]
-        nearest = nearest_neighbours(np.ascontiguousarray(sums[:, 1:4] / sums[:, :1]), AROUND)[0]
-        ratios.append(_flatness(_variances(sums, nearest), nearest)[cell])
+        around = min(AROUND, len(corner))
+        nearest = nearest_neighbours(np.ascontiguousarray(sums[:, 1:4] / sums[:, :1]), around)[0]
+        flatness, inside = _flatness(_variances(sums, nearest), nearest), sums[nearest, 0].sum(axis=1)
+        if number == 0:
+            ratios, many = [_alone(points, cell, flatness, nearest)], [np.where(flatness > FLAT, AROUND, inside)[cell]]
+        ratios.append(flatness[cell])
         cells.append(cell)
-        many.append(sums[nearest, 0].sum(axis=1)[cell])
+        many.append(inside[cell])
         corner //= 2
     return np.array(ratios), 1 + FEW / np.sqrt(np.array(many)), np.array(cells)
+
+
+def _alone(points: Points, cell: Indices, flatness: Numbers, nearest: Lists) -> Numbers:
+    """Return (n,) how flat the surface is about each point alone; in flat cells as flat as they are.
+
+    flatness (m,) is that of the cells, nearest (m, k) are the cells about each.
+    """
+    out, bent = flatness[cell], flatness > FLAT
+    about = np.zeros(len(bent), bool)
+    about[nearest[bent]] = True  # a point's neighbours are there
+    rows = np.flatnonzero(about[cell])
+    if len(rows) < AROUND:
+        return out
+    few = np.ascontiguousarray(points[rows])
+    next_to = nearest_neighbours(few, AROUND)[0]
+    own = bent[cell[rows]]
+    out[rows[own]] = _flatness(principal_axes(few, next_to)[0], next_to)[own]
+    return out
 
 
 def _products(points: Points) -> Table:
