@@ -29,8 +29,8 @@ from tiskel.params import MaxPoints
 ENOUGH = 20_000  # points; clouds of no more are taken as they are, they cost little
 SAMPLED = 8192  # points whose median spacing is that of all, within 2 %
 AROUND = 12  # cells whose points are looked at together, the cell itself included
-FINEST = 2.0  # spacings: side of the smallest cells
-FLAT = 0.02  # ratio of the lesser variances; flatter cells may be larger: their side is a quarter of a tube's radius
+FINEST = 1.75  # spacings: side of the smallest cells [2: fingers of a hand touch at 100 000; 1.5: noisy trunks wobble]
+FLAT = 0.015  # ratio of the lesser variances; flatter cells may be larger: their side is a quarter of a tube's radius
 NEARLY = 2.2  # times the least ratio of all sizes, for a size to be as good as any
 SHAPELESS = 0.6  # ratio that no size of cells is below, as where there is no surface: nothing is thinned
 VOLUME = 0.8  # ratio above which cells show a volume of noise, not yet the surface in it
