@@ -52,8 +52,8 @@ def surely_wires(network: Network) -> bool:
 
 
 def maybe_wires(found: Candidate) -> bool:
-    """Tell whether wires are worth a try: where tubes enclose no inside, or have loops that no handle confirms."""
-    return not found.solid.trusted or found.curve.loops > (found.solid.handles or 0)
+    """Tell whether wires are worth a try: where tubes enclose no inside, or their loops are not the handles of it."""
+    return not found.solid.trusted or found.curve.loops != (found.solid.handles or 0)
 
 
 def wires(network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None) -> Candidate:
@@ -96,7 +96,7 @@ def shorter(thin: Candidate, thick: Candidate) -> bool:
     worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
     if _unexplained(thin) >= worse * _unexplained(thick):
         return False
-    contacts = thick.curve.loops > (thick.solid.handles or 0) and thin.curve.ends >= THICKET and not thin.curve.loops
+    contacts = thick.curve.loops != (thick.solid.handles or 0) and thin.curve.ends >= THICKET and not thin.curve.loops
     return _thickness(thin) < (SLENDER if contacts else THIN) and (contacts or not thick.solid.trusted)
 
 
