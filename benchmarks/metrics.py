@@ -6,8 +6,8 @@
 
 Skeletal points, curve and loops of method robust are measured. Two yardsticks: the same of the shape hammer with as
 many points, for shapes and cases that look like pipes, leaves and plants; and ripser(points, maxdim=0) on the dense
-matrix of 4096 points. Peak memory is what a fresh process takes on top of its imports. Cases are taken from
-TISKEL_CASES, or ../shared/cases, where they are.
+matrix of 4096 points. Peak memory is what a fresh process takes on top of what it holds after a small cloud. Cases are
+taken from TISKEL_CASES, or ../shared/cases, where they are.
 """
 
 import argparse
@@ -15,13 +15,13 @@ import csv
 import multiprocessing
 import os
 import platform
-import resource
 import statistics
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from memory import held_from_now, peak
 from ripser import ripser
 
 from tiskel import Skeleton, contract, evaluate, extract_skeleton, load_cloud, make_shape, shape_graph
@@ -65,17 +65,17 @@ def dense(points: Points) -> float:
     return time.perf_counter() - start
 
 
-def peak(skeleton: Skeleton) -> float:
-    """Return the megabytes that a fresh process takes for the measures, beyond those for a small cloud."""
+def taken(skeleton: Skeleton) -> float:
+    """Return the megabytes that a fresh process takes for the measures, beyond what it held before."""
     with multiprocessing.get_context("spawn").Pool(1) as pool:
-        return float(pool.apply(_peak, (skeleton,)))
+        return float(pool.apply(_taken, (skeleton,)))
 
 
-def _peak(skeleton: Skeleton) -> float:
-    evaluate(extract_skeleton(contract(shape("capsule", 500))))
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+def _taken(skeleton: Skeleton) -> float:
+    evaluate(extract_skeleton(contract(shape("capsule", 500))))  # kernels are no part of it
+    before = held_from_now()
     evaluate(skeleton)
-    return (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+    return peak() - before
 
 
 def compare(name: str, points: Points, yardstick: Points) -> dict[str, object]:
@@ -97,7 +97,7 @@ def compare(name: str, points: Points, yardstick: Points) -> dict[str, object]:
         "hammer": round(theirs, 3),
         "over_hammer": round(over_hammer, 2),
         "over_ripser": round(over_ripser, 3),
-        "peak_mb": round(peak(skeleton)),
+        "peak_mb": round(taken(skeleton)),
         "largest": ", ".join(f"{part} {parts[part] / sum(parts.values()):.0%}" for part in largest),
     }
 
