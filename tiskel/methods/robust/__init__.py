@@ -74,8 +74,7 @@ def contract(
     with watch.measure("network"):
         few = thinned(points, params.max_points if surface is None else "all")  # a mesh was sampled as it needs
         network = prepared(few.points, params.neighbours_for(len(few.points)), surface)
-    span.at(0.5, "fronts")
-    trace = few.whole(contract_by_fronts(network, few.points, params), points)
+    trace = few.whole(contract_by_fronts(network, few.points, params, span.within(0.5, 1)), points)
     return replace(trace, ring_seconds=trace.ring_seconds + watch.seconds["network"])
 
 

@@ -21,6 +21,7 @@ from tiskel.methods.robust.axes import on_axes
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections, Status, StepRecord, Trace
 from tiskel.params import RobustParams
+from tiskel.progress import SILENT, Span
 from tiskel.timing import Stopwatch
 
 # Found by trial on the shapes of the gallery. In brackets: how many of the 14 curves of benchmarks/sensitivity.md
@@ -32,7 +33,7 @@ ACROSS = 0.2  # share of its length that a step costs where the contraction took
 SMALLEST_PART = 10  # points; parts with fewer are small components, unless there are no larger ones [0, 0; for debris]
 
 
-def contract_by_fronts(network: Network, cloud: Points, params: RobustParams) -> Trace:
+def contract_by_fronts(network: Network, cloud: Points, params: RobustParams, span: Span = SILENT) -> Trace:
     """Return the trace of a cloud (n, 3) that was prepared as a network: one step for each front."""
     watch = Stopwatch()
     with watch.measure("rings"):
@@ -44,6 +45,7 @@ def contract_by_fronts(network: Network, cloud: Points, params: RobustParams) ->
     history: list[tuple[Indices, Points]] = []
     sections = Sections(everyone, everyone)
     for number in range(params.max_steps):
+        span.at(number / params.max_steps, f"front {number + 1}")
         step_watch = Stopwatch()
         with step_watch.measure("front"):
             distance = front(network, contracted, widths, part, across=ACROSS * (number > 0))
