@@ -199,3 +199,16 @@ def test_warnings_come_back_from_json_and_from_older_files() -> None:
     moved = doubt.moved(lambda points: 2 * points + 1)
     assert moved == replace(doubt, places=((3.0, 5.0, 7.0),))
     assert replace(doubt, places=()).moved(lambda points: points).places == ()
+
+
+def test_a_long_flat_bar_is_a_note_and_a_plate_a_warning() -> None:
+    """A bar of 5 : 1 has a middle line; a plate of 1 : 1 has none, whatever curve comes out."""
+    generator = np.random.default_rng(0)
+    for long, severity in ((5.0, "note"), (1.0, "warning")):
+        sides = np.array([long, 1.0, 0.1])
+        area = np.array([sides[1] * sides[2], sides[0] * sides[2], sides[0] * sides[1]])
+        places, face = generator.random((4096, 3)) - 0.5, generator.choice(3, 4096, p=area / area.sum())
+        rows = np.arange(4096)
+        places[rows, face] = np.sign(places[rows, face]) / 2
+        s = extract_skeleton(contract(places * sides))
+        assert {one.code: one.severity for one in (*s.warnings, *s.notes)}["flat"] == severity

@@ -8,7 +8,7 @@ code            severity what
 ``loops``       warning  the body has more or fewer handles than the curve has loops
 ``open-ends``   warning  ends without a cap that look at another part of the curve: a gap left open
 ``far``         warning  points far from the curve: a part without a branch
-``flat``        warning  cones in a body whose normals hardly turn; a note where a sheet was told
+``flat``        warning  cones in a body whose normals hardly turn; a note where it is long, or told to be a sheet
 ``short``       warning  the body is hardly longer than thick
 ``bridged``     note     gaps crossed by straight lines; a warning where they are much of the curve
 ``small-parts`` note     points left out in small parts; a warning where they are many
@@ -25,7 +25,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Mask, Numbers, Points
+from tiskel.arrays import TINY, Mask, Numbers, Points, diagonal
 from tiskel.geometry.air import in_the_air
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.doubt import CurveWarning, Severity, as_places
@@ -162,13 +162,15 @@ def _flat(j: Judged) -> CurveWarning | None:
     share = float(flat.mean())
     if share <= levels.FLAT_SHARE:
         return None
-    sheet = bool((j.graph.regimes[j.node_of_point[flat]] == Regime.SHEET).mean() > levels.MOSTLY)
+    node = j.node_of_point[flat]
+    sheet = bool((j.graph.regimes[node] == Regime.SHEET).mean() > levels.MOSTLY)
+    half = float(np.quantile(np.linalg.norm(j.points[flat] - j.graph.nodes[node], axis=1), levels.MOST))
+    extent = diagonal(j.points)
+    middle = j.solid.trusted and levels.LONG * 2 * half < extent and j.graph.length < levels.TO_AND_FRO * extent
     text = "{share} of the points lie where the body is flat: " + (
         "the curve is the middle of a sheet there" if sheet else "a curve says little about it there"
     )
-    return _doubt(
-        "flat", text, share, j.graph.nodes[np.unique(j.node_of_point[flat])], None, "note" if sheet else "warning"
-    )
+    return _doubt("flat", text, share, j.graph.nodes[np.unique(node)], None, _severity(not (sheet or middle)))
 
 
 def _short(j: Judged) -> CurveWarning | None:

@@ -16,6 +16,7 @@ from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.checks import FAR, Candidate
 from tiskel.methods.robust.fit import foot_points, nearby_edges
 from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.sheets import flat_share
 from tiskel.methods.robust.treelike import CROWN
 from tiskel.methods.robust.wire import wire_curve
 from tiskel.params import RobustParams
@@ -28,6 +29,8 @@ THIN = 2.2  # spacings: median radius up to which limbs are wires [generated tre
 CUT = 3.0  # most that a point counts as unexplained
 NO_WORSE = 1.5  # of what tubes leave unexplained, what wires may leave of a crown [trees to 1.36, sheets from 2.9]
 THICKET = 40  # ends of a crown in which loops that no handle confirms are contacts of limbs
+NET = 10  # loops, besides two for every end, from which on wires are a net [ladders and chairs to 5, sheets from 54]
+SHEETS = 0.2  # share of nodes on sheets, from which on a body is one [crowns of twigs none, plates of two faces 1]
 SLENDER = 3.0  # spacings: median radius of such limbs, at most
 BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
 
@@ -52,8 +55,12 @@ def surely_wires(network: Network) -> bool:
 
 
 def maybe_wires(found: Candidate) -> bool:
-    """Tell whether wires are worth a try: where tubes enclose no inside, or their loops are not the handles of it."""
-    return not found.solid.trusted or found.curve.loops != (found.solid.handles or 0)
+    """Tell whether wires are worth a try: where tubes enclose no inside, or their loops are not the handles of it.
+
+    The faces of a sheet enclose something by chance; fewer loops say nothing there.
+    """
+    loops, handles = found.curve.loops, found.solid.handles or 0
+    return not found.solid.trusted or loops > handles or (loops < handles and flat_share(found) < SHEETS)
 
 
 def wires(network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None) -> Candidate:
@@ -92,7 +99,9 @@ def _on_tubes(tubes: Candidate, sharp: float, covered: float) -> Indices:
 
 
 def shorter(thin: Candidate, thick: Candidate) -> bool:
-    """Tell whether wires describe a cloud better than tubes do."""
+    """Tell whether wires describe a cloud better than tubes do; strands through a sheet do so, too, and are a net."""
+    if thin.curve.loops > NET + 2 * thin.curve.ends:
+        return False
     worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
     if _unexplained(thin) >= worse * _unexplained(thick):
         return False

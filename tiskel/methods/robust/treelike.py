@@ -20,9 +20,9 @@ CROWN = 15  # ends from which on a body is tree-like [tubes with loops, sampled 
 
 
 def without_contacts(found: Candidate, params: RobustParams) -> Candidate:
-    """Return a curve without loops, where it is to have none or is tree-like and its body has no handles."""
+    """Return a curve without loops, where it is to have none, or has more ends than these and its body no handles."""
     curve = found.curve
-    crown = params.topology == "auto" and curve.ends >= CROWN and not found.solid.handles
+    crown = params.topology == "auto" and curve.ends >= max(CROWN, curve.loops) and not found.solid.handles
     if not curve.loops or not (params.topology == "tree" or crown):
         return found
     fit = found.fit
