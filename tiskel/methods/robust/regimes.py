@@ -25,6 +25,9 @@ from tiskel.params import RobustParams
 LINE_NEIGHBOURS = 12  # points, itself included, that say whether the cloud is a line about a point
 LINE = 0.6  # (s1 - s2) / s1 with the root eigenvalues of the scatter: a line above it
 SURELY = 0.09  # share of such points from which on a cloud is of wires [tubes at most 0.07, thin trees 0.12 to 0.63]
+NOISY = (
+    0.3  # share of such points, below which thin limbs are noisy [noisy twigs to 0.21, stents and lattices from 0.88]
+)
 THIN = 2.2  # spacings: median radius up to which limbs are wires [generated trees to 2.0, noisy tubes from 2.3]
 CUT = 3.0  # most that a point counts as unexplained
 NO_WORSE = 1.5  # of what tubes leave unexplained, what wires may leave of a crown [trees to 1.36, sheets from 2.9]
@@ -46,12 +49,15 @@ SHORTEST = 0.5  # radii in the length of an edge, when its surface is asked for:
 
 def surely_wires(network: Network) -> bool:
     """Tell whether so many neighbourhoods are lines, or so few points linked, that no tube needs to be looked for."""
-    if not len(network.edges):
-        return True
+    return not len(network.edges) or linear_share(network) > SURELY
+
+
+def linear_share(network: Network) -> float:
+    """Return the share of the points about which the cloud is a line."""
     rows = network.neighbours[:, :LINE_NEIGHBOURS]
     offset = network.points[rows] - network.points[rows].mean(axis=1, keepdims=True)
     root = np.sqrt(np.maximum(np.linalg.eigvalsh(np.einsum("nki,nkj->nij", offset, offset)), 0))
-    return bool(((root[:, 2] - root[:, 1]) > LINE * np.maximum(root[:, 2], TINY)).mean() > SURELY)
+    return float(((root[:, 2] - root[:, 1]) > LINE * np.maximum(root[:, 2], TINY)).mean())
 
 
 def maybe_wires(found: Candidate) -> bool:
@@ -65,7 +71,8 @@ def maybe_wires(found: Candidate) -> bool:
 
 def wires(network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None) -> Candidate:
     """Return the curve of the wire regime, and what judges it; thick limbs are those of tubes that are known."""
-    curve, sections = wire_curve(network, params, None if tubes is None else resolved(tubes))
+    known = None if tubes is None else resolved(tubes)
+    curve, sections = wire_curve(network, params, known, noisy=linear_share(network) < NOISY)
     node = curve.node_of_section[sections.section]
     owned = np.flatnonzero(node >= 0).astype(np.int32)
     fit = foot_points(curve, network.points, owned, node[owned], nearby_edges(curve))

@@ -32,10 +32,13 @@ SELDOM = 0.28  # share of points on rings, below which what is a ring there is c
 SMALLEST_PART = 10  # points; separate parts with fewer get no curve, unless there are no larger ones
 
 
-def wire_curve(network: Network, params: RobustParams, tubes: Indices | None = None) -> tuple[ConeCurve, Sections]:
+def wire_curve(
+    network: Network, params: RobustParams, tubes: Indices | None = None, noisy: bool = False
+) -> tuple[ConeCurve, Sections]:
     """Return the curve of a cloud of wires, and the sections that its nodes stand for.
 
-    tubes (n,) name the sections of points on limbs that are known, -1 for others.
+    tubes (n,) name the sections of points on limbs that are known, -1 for
+    others; noisy says that points of threads may look like rings.
     """
     points = network.points
     links = links_of(points, max(SMALLEST_PART, int(params.least_part * len(points))))
@@ -44,7 +47,7 @@ def wire_curve(network: Network, params: RobustParams, tubes: Indices | None = N
     levels = levels_of(points, links, routes, BRIDGE, RESOLVED, tubes)
     limbs = limbs_of(levels, links.spacing)
     crowd = crowding(levels, limbs, links.spacing)
-    if crowd < FEW and levels.on_rings < SELDOM:
+    if noisy and crowd < FEW and levels.on_rings < SELDOM:
         levels = levels_of(points, links, routes, BRIDGE, THREADS, tubes)
         limbs = limbs_of(levels, links.spacing)
     curve, sections = curve_of(points, links.spacing, levels, limbs, params)
