@@ -74,10 +74,8 @@ def curves(command: Command) -> Command:
 def _with_settings(command: Command, settings: Mapping[str, tuple[Any, Any]], name: str) -> Command:
     def run(**arguments: Any) -> None:
         given = {key: value for key in settings if (value := arguments.pop(key)) is not None}
-        for key in set(method_options.PLACES) & set(given):
-            given[key] = surface_options.three(f"--{key.replace('_', '-')}", given[key])
-        if "max_points" in given:
-            given["max_points"] = method_options.so_many("--max-points", given["max_points"])
+        for key in set(method_options.READ) & set(given):
+            given[key] = method_options.READ[key](f"--{key.replace('_', '-')}", given[key])
         command(**arguments, **{name: given})
 
     return _with_options(command, run, settings, drop=(name,))

@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
+from tiskel.cli.surface_options import three
 from tiskel.params import GlsParams, LbcParams, MaxPoints, Normalisation, RegimeChoice, RobustParams, Solver, Topology
 
 ROBUST, GLS, LBC = RobustParams(), GlsParams(), LbcParams()
@@ -123,7 +124,6 @@ CURVING: dict[str, Option] = {
     ),
     "rounds": (_setting(int, "N", "Rounds of the fit of round cones to the points", "robust", ROBUST.rounds), None),
 }  # fmt: skip
-PLACES = ("root", "seen_from")  # options whose value is a place, written as x,y,z
 
 
 def so_many(name: str, value: str) -> MaxPoints:
@@ -134,3 +134,7 @@ def so_many(name: str, value: str) -> MaxPoints:
     if not (value.isascii() and value.isdigit()):
         raise typer.BadParameter(f"{name} must be auto, all or a whole number, got {value!r}")
     return int(value)
+
+
+#: How values are read that are neither one number nor one word.
+READ = {"root": three, "seen_from": three, "max_points": so_many}
