@@ -7,6 +7,7 @@ is passed over; so is one that is not nearer than what is known.
 
 import taichi as ti
 
+from .neighbours import square_of, square_to_box
 from .runtime import started
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)
@@ -17,20 +18,11 @@ LEAF = 8  # points; of 4 to 16 the fastest, by trial
 
 
 @ti.func
-def square_of(d) -> ti.f64:
-    """Return the squared length, summed in the order in which NumPy sums it."""
-    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
-
-
-@ti.func
 def box_square(low: ti.template(), high: ti.template(), shared: ti.template(), node, label, p) -> ti.f64:
-    """Return the squared distance of a box, infinite where all its points have the label.
-
-    Rounded differences are monotone, so that no point in the box comes out nearer than this.
-    """
+    """Return the squared distance of a box, infinite where all its points have the label."""
     square = ti.math.inf
     if shared[node] != label:
-        square = square_of(ti.max(low[node] - p, p - high[node], 0.0))
+        square = square_to_box(p, low[node], high[node])
     return square
 
 
