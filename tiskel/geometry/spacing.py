@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Numbers, Points, Table
 
 NEIGHBOURS = 4  # others that are counted: the four sides of a square lattice
+SAMPLED = 8192  # points of a sample whose median spacing is within 2 % of that of all
 
 
 def spacings_from(squares: Table) -> Numbers:

@@ -22,7 +22,7 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, Table, finite_rows, first_of_duplicates
 from tiskel.geometry.cells import cell_numbers
-from tiskel.geometry.spacing import NEIGHBOURS, spacing_of, spacings_from
+from tiskel.geometry.spacing import NEIGHBOURS, SAMPLED, spacing_of, spacings_from
 
 # By reasoning: along a wire sampled at random a gap of 8 spacings (16 mean gaps) is there once in ten million points.
 GAP = 8.0  # local spacings, per point of a group, between it and what is around
@@ -30,7 +30,6 @@ FEW = 10  # points from which on a group is a part of the body; as many as keep 
 PILE = 10  # times that a place is repeated at least, and as a multiple of what is usual in the file
 USUAL = 0.9  # quantile of the repetitions that says what is usual
 MANY = 32_768  # points; of more, those in crowded cells are not asked, and the median spacing is that of a sample
-SAMPLED = 8192  # points of such a sample: their median is within 2 % of that of all
 MOST = 0.05  # share of the places that may be stray; where more stand alone, that is what the cloud is like
 
 

@@ -19,7 +19,7 @@ from tiskel.arrays import TINY, Indices, Lists, Numbers, Points, Table
 from tiskel.geometry.cells import numbered
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
-from tiskel.geometry.spacing import spacing_of
+from tiskel.geometry.spacing import SAMPLED, spacing_of
 from tiskel.methods.robust.network import own_axes
 from tiskel.methods.trace import Trace
 from tiskel.params import MaxPoints
@@ -27,7 +27,6 @@ from tiskel.params import MaxPoints
 # Found by trial on a half torus, trunks with noise of a tenth and a quarter, and shapes of the gallery, 30 000 to
 # 262 144 points.
 ENOUGH = 20_000  # points; clouds of no more are taken as they are, they cost little
-SAMPLED = 8192  # points whose median spacing is that of all, within 2 %
 AROUND = 12  # cells whose points are looked at together, the cell itself included
 FINEST = 1.75  # spacings: side of the smallest cells [2: fingers of a hand touch at 100 000; 1.5: noisy trunks wobble]
 FLAT = 0.015  # ratio of the lesser variances; flatter cells may be larger: their side is a quarter of a tube's radius
@@ -101,10 +100,7 @@ def told(trace: Trace) -> tuple[CurveWarning, ...]:
     given, left = int((trace.merged_step != 0).sum()), len(trace.rows)
     if left == given:
         return ()
-    text = (
-        f"the curve was made with {left} means of the {given} points, as many as the surface needs; "
-        "--max-points all takes every point, and longer"
-    )
+    text = f"the curve was made with {left} means of the {given} points; --max-points all takes every point, and longer"
     return (CurveWarning("thinned", text, "note", share=1 - left / given),)
 
 
