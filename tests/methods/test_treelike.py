@@ -13,7 +13,7 @@ from tiskel.methods.robust import treelike
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.network import prepared
 from tiskel.methods.robust.pipeline import fitted_curve
-from tiskel.methods.robust.regimes import resolved
+from tiskel.methods.robust.regimes import on_sure_tubes
 from tiskel.methods.robust.treelike import without_contacts
 
 
@@ -49,8 +49,8 @@ def test_a_crown_keeps_the_loops_that_handles_confirm_and_no_others(monkeypatch:
 
 
 def test_points_of_tubes_lie_on_them_and_no_twig_of_a_crown_does() -> None:
-    limbs = resolved(tubes_of(make_shape(shape_graph("y"), ShapeParams(count=4096))[0]))
+    limbs = on_sure_tubes(tubes_of(make_shape(shape_graph("y"), ShapeParams(count=4096))[0]))
     assert (limbs >= 0).mean() > 0.9
     twigs = thickened(tree("leader", tips=100, seed=3), 4000, 0.3)
     crown = make_shape(twigs, ShapeParams(count=4000, noise=3.0))[0]
-    assert (resolved(tubes_of(crown)) == -1).all()
+    assert (on_sure_tubes(tubes_of(crown)) == -1).all()

@@ -163,9 +163,14 @@ def tidy_edges(edges: Edges) -> Edges:
     (f, 2) int32
         In ascending order.
     """
-    a, b = np.asarray(edges, np.int64).reshape(-1, 2).T
-    keys = np.unique((np.minimum(a, b) << 32 | np.maximum(a, b))[a != b])
+    keys = np.unique(edge_keys(edges))
     return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
+
+
+def edge_keys(edges: Edges) -> npt.NDArray[np.int64]:
+    """Return (f,) a number for every edge (e, 2) that is no loop: the same whatever its direction, in their order."""
+    a, b = np.asarray(edges, np.int64).reshape(-1, 2).T
+    return np.asarray((np.minimum(a, b) << 32 | np.maximum(a, b))[a != b])
 
 
 def node_radii(nodes: Points, cloud: Points, node_of_point: Indices) -> Numbers:

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Edges, Indices, Mask, Numbers, Points
+from tiskel.geometry.forest import spanning_links
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +125,7 @@ def spanning_tree(points: Points) -> SpanningTree:
     labels = np.arange(len(points), dtype=np.int32)
     while labels.max() > 0:
         first, second, square = search.shortest(labels)
-        joins = _without_cycles(labels[first], labels[second], square)
+        joins = spanning_links(labels[first], labels[second], square)
         taken.append(np.stack([first[joins], second[joins]], axis=1))
         squares.append(square[joins])
         labels = _united(labels, labels[first[joins]], labels[second[joins]])
@@ -222,17 +223,6 @@ class _Search:
         chosen = np.empty(parts, np.intp)
         chosen[labels[first[short]]] = short
         return first[chosen], second[chosen], square[chosen]
-
-
-def _without_cycles(one: Indices, other: Indices, squares: Numbers) -> Indices:
-    """Return the links to keep; those of a cycle are equally long, so that any of them may go."""
-    count = len(one)
-    keys = np.minimum(one, other) * np.int64(count) + np.maximum(one, other)
-    _, rows = np.unique(keys, return_index=True)
-    ranks = np.argsort(np.argsort(squares[rows], kind="stable")) + 1.0  # a weight of zero would be no link
-    links = sparse.coo_array((ranks, (one[rows], other[rows])), shape=(count, count))
-    kept = minimum_spanning_tree(links.tocsr()).data
-    return np.asarray(rows[np.argsort(ranks)[kept.astype(np.intp) - 1]], np.int32)
 
 
 def _united(labels: Indices, one: Indices, other: Indices) -> Indices:

@@ -52,9 +52,7 @@ from tiskel.timing import Stopwatch
 # change with 0.7 and with 1.4 times the value.
 DOUBTFUL = 0.012  # misfit from which on a further front is tried; every one after it needs as much again [0, 1]
 BULKY = 0.15  # misfit and share off the middle from which on the inside of the body is thinned
-NEARLY_CLOSED = (
-    0.85  # share of points between an inside and an outside, from which on a front shows limbs [leaves 0.78]
-)
+NEARLY_CLOSED = 0.85  # share of points between inside and outside, from which on a front shows limbs [leaves 0.78]
 FLAT = 0.5  # share of the nodes on sheets, from which on a cloud is one
 CLEARLY = 0.7  # of the misfit so far that another front may leave, to be taken [0, 0; decides on noisy mugs and chairs]
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import sparse
 
 from tiskel.arrays import Edges, Indices, Mask, Numbers, Points, resolved
-from tiskel.geometry.graph import CurveGraph, tidy_edges
+from tiskel.geometry.graph import CurveGraph, edge_keys, tidy_edges
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +94,8 @@ def contract_nodes(curve: ConeCurve, into: Indices, *, mean: bool = False) -> Co
 
 def _bridged(renamed: Edges, curve: ConeCurve) -> Mask:
     """Return which edges are bridges under new names of their nodes: those that stand for nothing but bridges."""
-    a, b = renamed.astype(np.int64).T
-    apart = a != b
-    edges, number = np.unique((np.minimum(a, b) << 32 | np.maximum(a, b))[apart], return_inverse=True)
+    edges, number = np.unique(edge_keys(renamed), return_inverse=True)
+    apart = renamed[:, 0] != renamed[:, 1]
     measured = np.bincount(number.ravel(), ~curve.bridged[apart], minlength=len(edges))
     return np.asarray(measured == 0)
 

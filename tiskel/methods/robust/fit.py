@@ -112,6 +112,13 @@ def fit_cones(
     return foot_points(curve, points, rows, owner[rows], nearby)
 
 
+def feet_of_own(curve: ConeCurve, points: Points, section: Indices) -> ConeFit:
+    """Return the foot points of all points (n, 3) whose section (n,) has a node, each on an edge near its node."""
+    node = curve.node_of_section[section]
+    rows = np.flatnonzero(node >= 0).astype(np.int32)
+    return foot_points(curve, points, rows, node[rows], nearby_edges(curve))
+
+
 def nearby_edges(curve: ConeCurve) -> Lists:
     """Return (v, w) the edges within a few hops of each node, padded with -1."""
     count, edges = len(curve.nodes), curve.edges

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Points, Table
+from tiskel.arrays import TINY, Edges, Indices, Lists, Masks, Numbers, Points, Table
 from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud, oriented_away, oriented_by_propagation
@@ -21,6 +21,8 @@ AREA_NEIGHBOURS = 8  # points in the disc about a point that gives its area [1, 
 FARTHEST = 6.0  # spacings of either point; what is further away is no neighbour [10, 4]
 FEWER = 0.5  # of the points without an inside and an outside that propagated normals leave, to be taken
 SURE = 0.99  # of the points between an inside and an outside: propagated normals could do no better
+LINE_NEIGHBOURS = 12  # points, itself included, that say whether the cloud is a line about a point
+LINE = 0.6  # (s1 - s2) / s1 with the root eigenvalues of the scatter: a line above it [by trial on generated trees]
 ALONG_NORMALS = 0.75  # cosine to both normals: such a step leaves the surface at both of its ends [13, 11]
 
 
@@ -68,6 +70,14 @@ class Network:
     def spacing(self) -> float:
         """The median spacing."""
         return float(np.median(self.spacings))
+
+    @cached_property
+    def linear_share(self) -> float:
+        """The share of the points about which the cloud is a line."""
+        near = self.points[self.neighbours[:, :LINE_NEIGHBOURS]]
+        offset = near - near.mean(axis=1, keepdims=True)
+        root = np.sqrt(np.maximum(np.linalg.eigvalsh(np.einsum("nki,nkj->nij", offset, offset)), 0))
+        return float(((root[:, 2] - root[:, 1]) > LINE * np.maximum(root[:, 2], TINY)).mean())
 
     @cached_property
     def links(self) -> sparse.csr_array:

@@ -10,11 +10,11 @@ as well as tubes for a crown of many ends, better for a few twigs.
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import TINY, Indices, Numbers
+from tiskel.arrays import Indices, Numbers
 from tiskel.geometry.regime import Regime
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.checks import FAR, Candidate
-from tiskel.methods.robust.fit import foot_points, nearby_edges
+from tiskel.methods.robust.fit import feet_of_own
 from tiskel.methods.robust.network import Network
 from tiskel.methods.robust.sheets import flat_share
 from tiskel.methods.robust.treelike import CROWN
@@ -22,12 +22,8 @@ from tiskel.methods.robust.wire import wire_curve
 from tiskel.params import RobustParams
 
 # Found by trial on generated trees, the shapes of the gallery, clean and degraded, and on scans.
-LINE_NEIGHBOURS = 12  # points, itself included, that say whether the cloud is a line about a point
-LINE = 0.6  # (s1 - s2) / s1 with the root eigenvalues of the scatter: a line above it
-SURELY = 0.09  # share of such points from which on a cloud is of wires [tubes at most 0.07, thin trees 0.12 to 0.63]
-NOISY = (
-    0.3  # share of such points, below which thin limbs are noisy [noisy twigs to 0.21, stents and lattices from 0.88]
-)
+SURELY = 0.09  # linear share from which on a cloud is of wires [tubes at most 0.07, thin trees 0.12 to 0.63]
+NOISY = 0.3  # linear share below which thin limbs are noisy [noisy twigs to 0.21, stents from 0.88]
 THIN = 2.2  # spacings: median radius up to which limbs are wires [generated trees to 2.0, noisy tubes from 2.3]
 CUT = 3.0  # most that a point counts as unexplained
 NO_WORSE = 1.5  # of what tubes leave unexplained, what wires may leave of a crown [trees to 1.36, sheets from 2.9]
@@ -37,10 +33,9 @@ SHEETS = 0.2  # share of nodes on sheets, from which on a body is one [crowns of
 SLENDER = 3.0  # spacings: median radius of such limbs, at most
 BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
 
-
 # What a limb of tubes has to have to be kept among wires, whose crown no tube explains [limbs of scanned and generated
 # trees 0.04 to 0.15 and 0.44 up; what fronts make of noisy twigs 0.07 to 0.25 and 0.12 to 0.6].
-RESOLVED = 2.0  # spacings in its radius, at least
+WIDE = 2.0  # spacings in its radius, at least
 SHARP = 0.125  # root mean square of the distances of its points from it, in radii, at most
 COVERED = 0.4  # share of its surface with points, at least
 MANY = 0.2  # share of points on such limbs from which on there are some [scans 0.34 up, noisy twigs to 0.10]
@@ -49,15 +44,7 @@ SHORTEST = 0.5  # radii in the length of an edge, when its surface is asked for:
 
 def surely_wires(network: Network) -> bool:
     """Tell whether so many neighbourhoods are lines, or so few points linked, that no tube needs to be looked for."""
-    return not len(network.edges) or linear_share(network) > SURELY
-
-
-def linear_share(network: Network) -> float:
-    """Return the share of the points about which the cloud is a line."""
-    rows = network.neighbours[:, :LINE_NEIGHBOURS]
-    offset = network.points[rows] - network.points[rows].mean(axis=1, keepdims=True)
-    root = np.sqrt(np.maximum(np.linalg.eigvalsh(np.einsum("nki,nkj->nij", offset, offset)), 0))
-    return float(((root[:, 2] - root[:, 1]) > LINE * np.maximum(root[:, 2], TINY)).mean())
+    return not len(network.edges) or network.linear_share > SURELY
 
 
 def maybe_wires(found: Candidate) -> bool:
@@ -71,15 +58,13 @@ def maybe_wires(found: Candidate) -> bool:
 
 def wires(network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None) -> Candidate:
     """Return the curve of the wire regime, and what judges it; thick limbs are those of tubes that are known."""
-    known = None if tubes is None else resolved(tubes)
-    curve, sections = wire_curve(network, params, known, noisy=linear_share(network) < NOISY)
-    node = curve.node_of_section[sections.section]
-    owned = np.flatnonzero(node >= 0).astype(np.int32)
-    fit = foot_points(curve, network.points, owned, node[owned], nearby_edges(curve))
+    known = None if tubes is None else on_sure_tubes(tubes)
+    curve, sections = wire_curve(network, params, known, noisy=network.linear_share < NOISY)
+    fit = feet_of_own(curve, network.points, sections.section)
     return Candidate(fit, sections, network, solid, int(curve.bridged.sum()))
 
 
-def resolved(tubes: Candidate) -> Indices:
+def on_sure_tubes(tubes: Candidate) -> Indices:
     """Return (n,) for every point the node of the tube that it lies on, -1 where there is none, or none to rely on.
 
     Where few points are on limbs that are surely resolved, fronts made up the
@@ -98,7 +83,7 @@ def _on_tubes(tubes: Candidate, sharp: float, covered: float) -> Indices:
         for values in (spacings, fit.radii, fit.residual**2)
     )
     area = 2 * np.pi * radius * np.maximum(curve.lengths, SHORTEST * radius)
-    good = (radius > RESOLVED * spacing) & (np.sqrt(spread) < sharp * radius) & (many * spacing**2 > covered * area)
+    good = (radius > WIDE * spacing) & (np.sqrt(spread) < sharp * radius) & (many * spacing**2 > covered * area)
     node = np.full(len(tubes.network.points), -1, np.int32)
     on = good[fit.edge] & (fit.residual < np.maximum(fit.radii, spacings))
     node[fit.rows[on]] = fit.nodes[on]

@@ -18,7 +18,7 @@ from tiskel.geometry.regime import Regime
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.cycles import without_tight_cycles
-from tiskel.methods.robust.fit import foot_points, nearby_edges
+from tiskel.methods.robust.fit import feet_of_own
 
 # Found by trial on leaves, plants, fronts of bodies and pipes of which a third was seen.
 TURN = np.radians(105)  # of the turn about a node that its points cover; less is a sheet, a third of a pipe 120 degrees
@@ -49,9 +49,7 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
     regimes = np.where(sheet, Regime.SHEET, Regime.TUBE).astype(np.uint8)
     laid = replace(curve, nodes=nodes, radii=radii, regimes=regimes)
     laid = without_tight_cycles(laid)
-    node = laid.node_of_section[found.sections.section]
-    rows = np.flatnonzero(node >= 0).astype(np.int32)
-    return replace(found, fit=foot_points(laid, found.network.points, rows, node[rows], nearby_edges(laid)))
+    return replace(found, fit=feet_of_own(laid, found.network.points, found.sections.section))
 
 
 def flat_share(found: Candidate) -> float:

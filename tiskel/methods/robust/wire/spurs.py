@@ -24,13 +24,13 @@ def without_spurs(curve: ConeCurve, spacing: float, crowding: float) -> ConeCurv
     while True:
         shortest: dict[int, tuple[float, int]] = {}
         paths = curve.paths_from(ends=True)
-        tree = cKDTree(curve.nodes)
+        tree, points = cKDTree(curve.nodes), curve.point_counts
         for number, path in enumerate(paths):
             joint = int(path[-1])
             if curve.degrees[joint] > 2:
                 length = float(np.linalg.norm(np.diff(curve.nodes[path], axis=0), axis=1).sum())
                 expected = crowding * length / spacing
-                few = float(curve.point_counts[path[:-1]].sum()) < expected - SPARSE * np.sqrt(expected)
+                few = float(points[path[:-1]].sum()) < expected - SPARSE * np.sqrt(expected)
                 least = max(SPUR * float(curve.radii[joint]), SHORT * spacing if few else 0.0)
                 if length < least or _beside(curve, tree, path):
                     shortest[joint] = min(shortest.get(joint, (np.inf, 0)), (length, number))
