@@ -28,15 +28,21 @@ def edges(*pairs: tuple[int, int]) -> np.ndarray:
     return np.array(pairs, np.int32).reshape(-1, 2)
 
 
-def test_raw_skeleton_of_the_hammer_is_the_toolbox(reference_cloud: Load, toolbox: Load) -> None:
-    points, theirs = reference_cloud("hammer"), toolbox("hammer_lbc")
+@pytest.mark.parametrize(
+    ("name", "count", "links"),
+    [("hammer", 50, 49), ("horse", 55, 57), ("joint", 46, 45), ("cave", 29, 29), ("fertility", 44, 49)],
+)
+def test_raw_skeletons_are_those_of_the_toolbox(
+    name: str, count: int, links: int, reference_cloud: Load, toolbox: Load
+) -> None:
+    points, theirs = reference_cloud(name), toolbox(f"{name}_lbc")
     s = extract_skeleton(contract(points, ContractionParams(method="lbc")), SkeletonParams(raw=True))
     distance, match = cKDTree(normalisation(points).apply(s.nodes)).query(theirs["nodes"])
-    assert len(s.nodes) == len(theirs["nodes"]) == 50
+    assert len(s.nodes) == len(theirs["nodes"]) == count
     assert distance.max() < 1e-4
     ours = {tuple(sorted(edge)) for edge in s.edges.tolist()}
     assert ours == {tuple(sorted(match[edge].tolist())) for edge in theirs["edges"]}
-    assert len(ours) == 49
+    assert len(ours) == links
 
 
 def test_front_samples_cover_the_cloud_and_owners_are_within_the_radius() -> None:

@@ -26,7 +26,9 @@ def _walk(flat: Table) -> list[int]:
         triangles = Delaunay(flat, qhull_options="Qt Qbb Qc").simplices
     except QhullError:
         return []
-    sides = [sorted(set(map(int, triangle)) - {0}) for triangle in triangles[(triangles == 0).any(axis=1)]]
+    about = [triangle for triangle in triangles.tolist() if 0 in triangle]
+    about.sort(key=lambda triangle: triangle[2] == 0)  # column by column; the first two are one to it
+    sides = [sorted(set(triangle) - {0}) for triangle in about]
     if not sides:
         return []
     labels, counts = np.unique(np.array(sides), return_counts=True)

@@ -1,9 +1,11 @@
 """From samples to a graph: joining neighbours, then collapsing triangles, as published."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Edges, Indices, Numbers, Points
+from tiskel.arrays import Edges, Indices, Points
 from tiskel.geometry.rings import Rings
 
 
@@ -44,13 +46,14 @@ def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Edges:
 def collapse_triangles(nodes: Points, edges: Edges) -> tuple[Points, Edges, Indices]:
     """Collapse edges of triangles until none is left.
 
-    The toolbox means to take the edge of lowest mean degree first and the
-    shortest among equals. What it computes, and what reproduces its published
-    curves, is: each triangle i < j < k offers (i, j), (j, k) and (k, i); the
-    second end survives, at the midpoint; the key is the row sum of the second
-    end in an adjacency matrix where a survivor joins the *columns* of the
-    edges it inherits and its own row stays as it was. When that finds no
-    triangle any more, both ends are told of every edge and the search goes on.
+    The edge of lowest mean degree goes first, the shortest among equals, and
+    the end that survives moves to its midpoint (Cao et al. 2010, section 4).
+    Departures of the toolbox, which makes the published curves and is followed
+    to the letter: the table of edges is made once and then mended, so that keys
+    of edges away from the survivor are those of an earlier time; an edge of two
+    triangles stands in it twice; and a degree is that among nodes of higher
+    number where it is the first of a triangle i < j < k, the whole one of the
+    other two, and half of it in every row that was made or mended later.
 
     Parameters
     ----------
@@ -68,60 +71,121 @@ def collapse_triangles(nodes: Points, edges: Edges) -> tuple[Points, Edges, Indi
     into : (v,) int32
         For each node before the one after.
     """
-    position = dict(enumerate(nodes))
-    around: dict[int, set[int]] = {i: set() for i in range(len(nodes))}
-    for a, b in edges.tolist():
-        around[a].add(b)
-        around[b].add(a)
-    into = np.arange(len(nodes), dtype=np.int32)
-    while True:
-        best = _cheapest(position, around)
-        if best is None:
-            if _symmetrise(around):
-                continue
-            break
-        lost, kept = best
-        position[kept] = (position.pop(lost) + position[kept]) / 2
-        knew = around.pop(lost)
-        for other, neighbours in around.items():
-            if other != kept and (other in knew or lost in neighbours):
-                neighbours.add(kept)
-            neighbours.discard(lost)
-        into[into == lost] = kept
-    return _compacted(position, around, into)
+    work = _Collapse(nodes, edges)
+    work.list_triangles()
+    while work.table:
+        work.collapse_cheapest()
+    return work.compacted()
 
 
-def _symmetrise(around: dict[int, set[int]]) -> bool:
-    """Let both ends of every edge know of it; return whether one did not."""
-    missing = [(b, a) for a, others in around.items() for b in others if a not in around[b]]
-    for a, b in missing:
-        around[a].add(b)
-    return bool(missing)
+@dataclass
+class _Row:
+    """An edge of a triangle: both ends, and the key it is chosen by."""
+
+    ends: list[int]
+    degree: float
+    length: float
+
+    def other(self, place: int) -> int:
+        return self.ends[1 - place]
 
 
-def _cheapest(position: dict[int, Numbers], around: dict[int, set[int]]) -> tuple[int, int] | None:
-    """Return the edge (lost, kept) with the lowest key, the first found among equals."""
-    best, key = None, (np.inf, np.inf)
-    for i in sorted(around):
-        higher = sorted(j for j in around[i] if j > i)
-        for at, j in enumerate(higher):
-            for k in higher[at + 1 :]:
-                if k not in around[j]:
-                    continue
-                for lost, kept in ((i, j), (j, k), (k, i)):
-                    candidate = (len(around[kept]), float(np.linalg.norm(position[lost] - position[kept])))
-                    if candidate < key:
-                        best, key = (lost, kept), candidate
-    return best
+class _Collapse:
+    """The graph as it shrinks, and the table of the edges of its triangles."""
 
+    def __init__(self, nodes: Points, edges: Edges) -> None:
+        self.place = np.array(nodes, dtype=float)
+        self.into = np.arange(len(nodes), dtype=np.int32)
+        self.around: dict[int, set[int]] = {i: set() for i in range(len(nodes))}
+        for a, b in edges.tolist():
+            self.around[a].add(b)
+            self.around[b].add(a)
+        self.table: dict[int, _Row] = {}  # by serial number, so in the order in which they came
+        self.rows_of: dict[int, set[int]] = {i: set() for i in self.around}
+        self.serial = 0
 
-def _compacted(
-    position: dict[int, Numbers], around: dict[int, set[int]], into: Indices
-) -> tuple[Points, Edges, Indices]:
-    """Number the nodes that are left from zero and return the edges that either end knows of."""
-    left = sorted(position)
-    place = {node: i for i, node in enumerate(left)}
-    pairs = {(min(place[a], place[b]), max(place[a], place[b])) for a in left for b in around[a]}
-    nodes = np.array([position[node] for node in left]).reshape(-1, 3)
-    edges = np.array(sorted(pairs), np.int32).reshape(-1, 2)
-    return nodes, edges, np.array([place[int(node)] for node in into], np.int32)
+    def length(self, a: int, b: int) -> float:
+        return float(np.linalg.norm(self.place[a] - self.place[b]))
+
+    def half_degree(self, a: int, b: int) -> float:
+        """Return the mean of half the degrees, as rows have it that are made or mended on the way."""
+        return (len(self.around[a]) + len(self.around[b])) / 4
+
+    def triangles_above(self, i: int) -> list[tuple[int, int]]:
+        """Return the pairs j < k that make triangles i < j < k."""
+        above = sorted(j for j in self.around[i] if j > i)
+        return [(j, k) for at, j in enumerate(above) for k in above[at + 1 :] if k in self.around[j]]
+
+    def list_triangles(self) -> None:
+        degree = {i: len(others) for i, others in self.around.items()}
+        for i in self.around:
+            higher = sum(j > i for j in self.around[i])
+            for j, k in self.triangles_above(i):
+                self.add(i, j, (higher + degree[j]) / 2)
+                self.add(j, k, (degree[j] + degree[k]) / 2)
+                self.add(i, k, (higher + degree[k]) / 2)
+
+    def add(self, a: int, b: int, degree: float) -> None:
+        self.table[self.serial] = _Row([a, b], degree, self.length(a, b))
+        self.rows_of[a].add(self.serial)
+        self.rows_of[b].add(self.serial)
+        self.serial += 1
+
+    def drop(self, serials: set[int]) -> None:
+        for serial in serials:
+            for end in self.table.pop(serial).ends:
+                self.rows_of[end].discard(serial)
+
+    def rows_with(self, node: int) -> list[tuple[int, int]]:
+        """Return the rows of a node and which end it is, those where it is the first end in front."""
+        return [(s, end) for end in (0, 1) for s in sorted(self.rows_of[node]) if self.table[s].ends[end] == node]
+
+    def collapse_cheapest(self) -> None:
+        cheapest = min(self.table, key=lambda s: (self.table[s].degree, self.table[s].length))
+        lost, kept = self.table[cheapest].ends
+        self.drop({cheapest})
+        self.place[kept] = (self.place[lost] + self.place[kept]) / 2
+        for other in self.around.pop(lost):
+            self.around[other].discard(lost)
+            if other != kept:
+                self.around[other].add(kept)
+                self.around[kept].add(other)
+        self.into[self.into == lost] = kept
+        self.hand_over(lost, kept)
+        self.mend(kept)
+
+    def hand_over(self, lost: int, kept: int) -> None:
+        """Give the rows of the lost end to the survivor, but for those that it has."""
+        known = {self.table[s].other(end) for s, end in self.rows_with(kept)}
+        gone: set[int] = set()
+        for serial, end in self.rows_with(lost):
+            if self.table[serial].other(end) in known:
+                gone.add(serial)
+            else:
+                self.table[serial].ends[end] = kept
+                self.rows_of[kept].add(serial)
+                self.rows_of[lost].discard(serial)
+        self.drop(gone)
+
+    def mend(self, kept: int) -> None:
+        """Let the table hold the edges of all triangles of the survivor, and none that is in no triangle."""
+        near = sorted(self.around[kept])
+        sides = [(j, k) for at, j in enumerate(near) for k in near[at + 1 :] if k in self.around[j]]
+        corners = list(dict.fromkeys(corner for side in sides for corner in side))
+        held = self.rows_with(kept)
+        self.drop({s for s, end in held if self.table[s].other(end) not in corners})
+        for a, b in [(kept, corner) for corner in corners] + sides:
+            if not any(self.table[s].other(end) == b for s, end in self.rows_with(a)):
+                self.add(a, b, self.half_degree(a, b))
+        for serial, end in self.rows_with(kept):
+            other = self.table[serial].other(end)
+            self.table[serial].degree = self.half_degree(kept, other)
+            self.table[serial].length = self.length(kept, other)
+
+    def compacted(self) -> tuple[Points, Edges, Indices]:
+        """Return the nodes that are left, numbered from zero, their edges, and the new number of every node."""
+        left = sorted(self.around)
+        number = {node: i for i, node in enumerate(left)}
+        pairs = sorted((number[a], number[b]) for a in left for b in self.around[a] if a < b)
+        edges = np.array(pairs, np.int32).reshape(-1, 2)
+        return self.place[left].reshape(-1, 3), edges, np.array([number[int(n)] for n in self.into], np.int32)

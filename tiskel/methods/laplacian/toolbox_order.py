@@ -4,11 +4,12 @@ A ring is the same ring wherever it starts, but the toolbox depends on the
 start: the repeated first member of a closed ring counts twice in the first
 contraction weight, and the curve stage joins samples by the *first* foreign
 member. The order follows from how the toolbox reads its triangulation: Qhull's
-triangles about the point, in Qhull's order, walked from the smaller label of
-the first one; the labels are ranks among the neighbours, the coordinates the
-neighbours' own (not centred) on LAPACK's singular vectors. Done so, more than
-99 % of the rings of the reference clouds start and turn as in the toolbox;
-the others are the same rings from another start.
+triangles about the point, in Qhull's order but for those that have the point
+as their third corner, which come last (the toolbox searches column by column),
+walked from the smaller label of the first one; the labels are ranks among the
+neighbours, the coordinates the neighbours' own (not centred) on LAPACK's
+singular vectors. Done so, all rings of the reference clouds start and turn as
+in the toolbox.
 
 Qhull takes two thirds of the time, and holds on to the interpreter, so that threads
 do not help. What is read from its triangles is read of many points at once: where
@@ -63,9 +64,10 @@ def _delaunay(flat: Table) -> Lists:
 
 def _walked(members: Lists, sizes: Indices, neighbours: Lists, triangles: Sequence[Lists]) -> Lists:
     """Return the members of rings (n, w), each from where the toolbox starts, in its direction."""
-    owner = np.repeat(np.arange(len(members)), [len(one) for one in triangles])
+    owner: Indices = np.repeat(np.arange(len(members), dtype=np.int32), [len(one) for one in triangles])
     every = np.concatenate(triangles)
-    about = (every == 0).any(axis=1)
+    about = np.flatnonzero((every == 0).any(axis=1))
+    about = about[np.argsort(2 * owner[about] + (every[about, 2] == 0), kind="stable")]
     owner, sides = owner[about], np.sort(every[about], axis=1)[:, 1:]  # labels are ranks; 0 is the point itself
     start, second, held = _starts(owner, sides, neighbours.shape)
     rank = (members[:, :, None] == neighbours[:, None, :]).argmax(axis=2)
