@@ -5,7 +5,17 @@ from typing import Annotated, Any
 import typer
 
 from tiskel.cli.surface_options import three
-from tiskel.params import GlsParams, LbcParams, MaxPoints, Normalisation, RegimeChoice, RobustParams, Solver, Topology
+from tiskel.params import (
+    GlsParams,
+    LbcParams,
+    MaxPoints,
+    Normalisation,
+    RegimeChoice,
+    RobustParams,
+    Solver,
+    Topology,
+    Variant,
+)
 
 ROBUST, GLS, LBC = RobustParams(), GlsParams(), LbcParams()
 PUBLISHED = "gls and lbc"
@@ -58,6 +68,32 @@ CONTRACTING: dict[str, Option] = {
             float, "SHARE", "Separate pieces with less than this share of the points, such as loose leaves or dust, "
             "get no curve", "robust", ROBUST.least_part,
         ), None,
+    ),
+    "variant": (
+        _setting(
+            Variant, None, "Whose algorithm: the paper's, or that of its toolbox with all its departures", "gls",
+            GLS.variant,
+        ), None,
+    ),
+    "growth": (
+        _setting(float, "S_L", "Factor by which the contraction weight grows a step", PUBLISHED, GLS.growth), None,
+    ),
+    "contraction_weight": (
+        _setting(
+            float, "W_L", "Contraction weight of the first step", PUBLISHED, "1 / (5 mean ring lengths)",
+        ), None,
+    ),
+    "attraction_weight": (
+        _setting(float, "W_H", "Attraction weight of the first step", PUBLISHED, GLS.attraction_weight), None,
+    ),
+    "epsilon": (
+        _setting(float, "E", "Factor of the mean shrinkage of the rings where points are chosen to merge", "gls",
+                 GLS.epsilon), None,
+    ),
+    "phi": (_setting(float, "PHI", "A point merges where F < PHI s^2", "gls", f"{GLS.phi:g}"), None),
+    "theta": (
+        _setting(float, "T", "Least change of the explained score; a step that changes it by less ends the run", "gls",
+                 GLS.theta), None,
     ),
     "solver": (_setting(Solver, None, "Sparse solver, else the variable TISKEL_SOLVER", PUBLISHED, GLS.solver), None),
 }  # fmt: skip

@@ -70,9 +70,22 @@ def test_points_that_contract_to_one_side_are_off_centre_by_that_much() -> None:
     assert point_centredness(centred, np.concatenate([ring[:6], -ring[:6]])).max() > 0.6
 
 
+def test_distances_are_to_the_mean_of_the_skeletal_points_not_to_each_ones_own() -> None:
+    generator = np.random.default_rng(0)
+    points, originals = generator.random((30, 3)), generator.random((30, 3))
+    found = point_centredness(points, originals)
+    for i in range(30):
+        near = np.argsort(np.linalg.norm(points - points[i], axis=1))[: neighbourhood_size(30)]
+        middle = points[near].mean(axis=0)
+        away = np.linalg.norm(originals[near] - middle, axis=1).mean()
+        c = max(0, 1 - np.linalg.norm(originals[near].mean(axis=0) - middle) / away)
+        assert found[i] == pytest.approx(c, abs=1e-12)
+
+
 def test_points_that_did_not_move_are_centred() -> None:
     points = np.random.default_rng(0).random((30, 3))
-    assert point_centredness(points, points).tolist() == [1.0] * 30
+    assert point_centredness(points, points) == pytest.approx(1, abs=1e-12)
+    assert point_centredness(np.zeros((30, 3)), np.zeros((30, 3))).tolist() == [1.0] * 30
 
 
 @pytest.mark.parametrize("span", [2 * np.pi, np.pi, 1.5])

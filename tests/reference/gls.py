@@ -1,4 +1,4 @@
-"""GLSkeleton, plainly: the paper's version, and the toolbox's with its departures.
+"""GLSkeleton, plainly, the paper's version.
 
 The system of a step is solved by SuperLU with the settings of the library: these systems are so ill-conditioned that
 another ordering moves points by 1e-6, enough to flip a mark that is nearly tied. Everything else is loops over points
@@ -44,9 +44,9 @@ def explained_score(points: np.ndarray) -> float:
 
 def stage_function(
     origin: np.ndarray, there: np.ndarray, delta: np.ndarray, rings: list[Ring], first: np.ndarray, now: np.ndarray,
-    shrinkage: float, weight: float, reference_delta: np.ndarray | None = None,
+    shrinkage: float, weight: float,
 ) -> np.ndarray:  # fmt: skip
-    """Return F of every point; reference_delta stands in for the point's own coordinate in U (toolbox)."""
+    """Return F of every point."""
     out = np.empty(len(there))
     for i, (ring, _) in enumerate(rings):
         remainder = now[i] - shrinkage * first[i]
@@ -55,8 +55,7 @@ def stage_function(
         v2 = 0.0
         if first[i] != now[i]:
             v2 = np.sum((shrinkage * first[i] / (first[i] - now[i]) * (there[i] - origin[i])) ** 2) / eta**2
-        own = delta[i] if reference_delta is None else reference_delta
-        u = np.sum((own - np.mean([delta[j] for j in ring], axis=0)) ** 2) if ring else 0.0
+        u = np.sum((delta[i] - np.mean([delta[j] for j in ring], axis=0)) ** 2) if ring else 0.0
         out[i] = v1 - v2 + 3 * u
     return out
 
@@ -160,71 +159,3 @@ def compacted(rings: list[Ring], kept: list[int]) -> list[Ring]:
 def attractions(first: np.ndarray, now: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore"):
         return np.asarray(np.minimum(first / now, CAP_ATTRACTION))
-
-
-def contract_as_toolbox(points: np.ndarray, rings: list[Ring], weight: float, steps: int) -> list[int]:
-    """Return the points left after each reduction with the toolbox's departures from its paper.
-
-    - U takes the Laplacian coordinate of point 1 for every point.
-    - psi is the remaining ring ratio in the first step, later the fall of the ratio of the points present.
-    - Partners and unions come from the rings as the step found them; merges happen in index order, and each new
-      ring is renamed by the merges so far; an open ring must keep four members (its list has no repeated end).
-    - Renaming drops a repeat only where it stands beside its twin; otherwise the ring holds the member twice.
-    - Attraction takes the ring sizes of before the merge.
-    """
-    counts: list[int] = []
-    origin, here, first = points, points, sizes(points, rings)
-    first_weight, attraction, previous = weight, np.ones(len(points)), 0.0
-    for k in range(steps):
-        matrix = cotangent_laplacian(here, rings)
-        there = solve(matrix, weight, attraction, here)
-        if (np.ptp(there, axis=0) > BOX_GROWTH * np.ptp(points, axis=0)).any():
-            break
-        delta, now = matrix @ here, sizes(there, rings)
-        ratio = now.sum() / first.sum()
-        psi = ratio if k == 0 else previous - ratio
-        previous = ratio
-        weight_k = GROWTH ** (k + 2) * first_weight
-        stage = stage_function(
-            origin, there, delta, rings, first, now, EPSILON * psi, weight_k, reference_delta=delta[0]
-        )
-        merged, rings = merge_in_turn(origin, there, rings, stage < PHI * now**2, delta)
-        kept = [i for i in range(len(there)) if i not in merged]
-        rings = compacted(rings, kept)
-        origin, here, first = origin[kept], there[kept], first[kept]
-        counts.append(len(kept))
-        weight, attraction = min(weight * GROWTH, CAP_CONTRACTION), attractions(first, now[kept])
-    return counts
-
-
-def renamed_by_toolbox(ring: list[int], names: dict[int, int], owner: int) -> list[int]:
-    """Return a ring under new names, the owner dropped, and of repeats only those that stand side by side."""
-    fresh = [name for name in (names.get(j, j) for j in ring) if name != owner]
-    kept = [name for before, name in zip([None, *fresh], fresh, strict=False) if name != before]
-    return kept[:-1] if len(kept) > 1 and kept[0] == kept[-1] else kept
-
-
-def merge_in_turn(
-    origin: np.ndarray, there: np.ndarray, rings: list[Ring], marked: np.ndarray, delta: np.ndarray
-) -> tuple[dict[int, int], list[Ring]]:
-    """Merge in index order as the toolbox does; return removed -> kept and the rings."""
-    start, rings = rings, list(rings)
-    merged: dict[int, int] = {}
-    taken: set[int] = set()
-    for i in np.flatnonzero(marked).tolist():
-        if i in taken or not start[i][0]:
-            continue
-        m = start[i][0][int(np.argmin([np.linalg.norm(there[j] - there[i]) for j in start[i][0]]))]
-        union = [j for j in dict.fromkeys(start[i][0] + start[m][0]) if j not in (i, m)]
-        if m in taken or len(union) < 3:
-            continue
-        ring, closed = rebuilt(origin, i, union, delta[i])
-        if len(ring) < (3 if closed else 4):
-            continue
-        merged[m] = i
-        taken |= {i, m}
-        rings[i] = renamed_by_toolbox(ring, merged, i), closed
-        for j, (other, other_closed) in enumerate(rings):
-            if j != i and m in other:
-                rings[j] = renamed_by_toolbox(other, {m: i}, j), other_closed
-    return merged, rings

@@ -16,6 +16,7 @@ from tiskel.methods import robust
 from tiskel.methods.laplacian.curve import curve as published_curve
 from tiskel.methods.laplacian.gls import contract_gls
 from tiskel.methods.laplacian.lbc import contract_lbc
+from tiskel.methods.laplacian.toolbox_gls import contract_as_toolbox
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import GlsParams, LbcParams
 from tiskel.progress import Span
@@ -42,7 +43,8 @@ def _gls(
     points: Points, params: GlsParams, weights: Numbers | None, surface: MeshSurface | None, span: Span
 ) -> Trace:  # fmt: skip
     """Contract as published: a mesh is points to it."""
-    return contract_gls(points, params, weights, span)
+    contracted = contract_as_toolbox if params.variant == "toolbox" else contract_gls
+    return contracted(points, params, weights, span)
 
 
 def _lbc(

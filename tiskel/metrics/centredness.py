@@ -29,8 +29,9 @@ def point_centredness(points: Points, originals: Points) -> Numbers:
     """Return the centredness c of skeletal points, before boundedness is asked for.
 
     Among the N nearest skeletal points, itself included,
-    c = 1 - |mean originals - mean skeletal| / mean |original - skeletal|, at
-    least 0. Where nothing moved, c is 1 if the means agree.
+    c = 1 - |mean originals - mean skeletal| / mean |original - mean skeletal|,
+    at least 0 (Wen et al. 2025, Eq 4.14): the distances are to the mean of these
+    skeletal points, not each original's to its own. 1 where all originals are there.
 
     Parameters
     ----------
@@ -53,11 +54,12 @@ def point_centredness(points: Points, originals: Points) -> Numbers:
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
     """
     near = nearest_neighbours(points, neighbourhood_size(len(points)))[0]
-    apart = np.empty(len(points))
+    apart, away = np.empty(len(points)), np.empty(len(points))
     for rows in np.array_split(np.arange(len(points)), -(-len(points) // BLOCK) or 1):
-        apart[rows] = np.linalg.norm((originals[near[rows]] - points[near[rows]]).mean(axis=1), axis=1)
-    moved = np.linalg.norm(originals - points, axis=1)[near].mean(axis=1)
-    ratio = np.divide(apart, moved, out=np.zeros(len(points)), where=moved > 0)
+        offsets = originals[near[rows]] - points[near[rows]].mean(axis=1, keepdims=True)
+        apart[rows] = np.linalg.norm(offsets.mean(axis=1), axis=1)
+        away[rows] = np.linalg.norm(offsets, axis=2).mean(axis=1)
+    ratio = np.divide(apart, away, out=np.zeros(len(points)), where=away > 0)
     return np.asarray(np.maximum(0, 1 - ratio))
 
 

@@ -14,6 +14,7 @@ from tiskel.params.checks import among, at_least, between, finite, so_many
 
 Method = Literal["robust", "gls", "lbc"]
 Normalisation = Literal["side", "diagonal"]
+Variant = Literal["paper", "toolbox"]
 Solver = Literal["scipy", "cholmod"]
 RegimeChoice = Literal["auto", "tube", "wire"]
 Topology = Literal["auto", "tree", "loops"]
@@ -126,6 +127,8 @@ class LaplacianParams(ContractionParams):
     normalise: Normalisation = "side"  #: what is scaled to 1.6: the longest side [T], or the diagonal (Wen et al.)
     solver: Solver = "scipy"
     growth: float = 3.0  #: s_L, factor of the contraction weight per step [T]
+    contraction_weight: float | None = None  #: W_L of the first step; None: 1 / (5 times the mean ring length) [T]
+    attraction_weight: float = 1.0  #: W_H of the first step; later ones are times S(0) / S(k) [T]
     max_contraction_weight: float = 2048.0  #: cap of W_L [T]
     max_attraction_weight: float = 10000.0  #: cap of W_H [T]
     cotangent_cap: float = 10000.0  #: cap of the absolute sum of a row's cotangents [T]
@@ -138,6 +141,9 @@ class LaplacianParams(ContractionParams):
         among("solver", self.solver, get_args(Solver))
         at_least("neighbours", self.neighbours, 4)
         at_least("max_steps", self.max_steps, 1)
+        for name in ("growth", "contraction_weight", "attraction_weight"):
+            if getattr(self, name) is not None and not 0 < getattr(self, name) < inf:
+                raise TiskelError(f"{name} must be a positive number, got {getattr(self, name)}")
         if not 0 < self.radius < 1:
             raise TiskelError(f"radius must be a share of the diagonal between 0 and 1, got {self.radius}")
 
@@ -173,6 +179,7 @@ class GlsParams(LaplacianParams):
     """
 
     method: Literal["gls"] = "gls"
+    variant: Variant = "paper"  #: whose algorithm, where the published code departs from its paper
     max_steps: int = 10  #: [T]
     min_steps: int = 3  #: at least so many are kept [T]
     epsilon: float = 1.2  #: factor of the mean ring shrinkage [T]
@@ -182,7 +189,10 @@ class GlsParams(LaplacianParams):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        among("variant", self.variant, get_args(Variant))
         at_least("min_steps", self.min_steps, 1)
+        for name in ("epsilon", "phi", "theta", "guard"):
+            between(name, getattr(self, name), 0, inf)
 
 
 CLASSES: Mapping[str, type[ContractionParams]] = {"robust": RobustParams, "gls": GlsParams, "lbc": LbcParams}

@@ -58,7 +58,7 @@ def collapse_triangles(nodes: Points, edges: Edges) -> tuple[Points, Edges, Indi
     Parameters
     ----------
     nodes : (v, 3) float64
-        Where the samples are, in any unit.
+        Where the samples are, in any unit; edges to a NaN count as endless.
     edges : (e, 2) int32
         Pairs of them.
 
@@ -105,7 +105,8 @@ class _Collapse:
         self.serial = 0
 
     def length(self, a: int, b: int) -> float:
-        return float(np.linalg.norm(self.place[a] - self.place[b]))
+        length = float(np.linalg.norm(self.place[a] - self.place[b]))
+        return length if length < np.inf else np.inf
 
     def half_degree(self, a: int, b: int) -> float:
         """Return the mean of half the degrees, as rows have it that are made or mended on the way."""

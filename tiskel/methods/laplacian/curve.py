@@ -3,21 +3,26 @@
 A front of balls samples the contracted cloud, first foreign ring members join
 the samples, and edges of triangles collapse until none is left. Departure from
 print, unless ``raw``: spurs of a single edge shorter than the local radius go.
+With ``raw``, lbc has the nodes and edges of its toolbox, and gls of variant
+"toolbox" those of the toolbox of GLSkeleton; which they are depends on the order
+of the points, since the front of balls starts at the first.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
-from tiskel.arrays import Indices, Points, diagonal
+from tiskel.arrays import Edges, Indices, Points, diagonal
 from tiskel.errors import TiskelError
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph, node_radii
 from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.rings import Rings
 from tiskel.methods.laplacian.collapse import collapse_triangles, inherited_edges
 from tiskel.methods.laplacian.sampling import front_samples
+from tiskel.methods.laplacian.toolbox_curve import join_counts, without_lost, without_straight
 from tiskel.methods.trace import MethodCurve, Trace
-from tiskel.params import LaplacianParams
+from tiskel.params import GlsParams, LaplacianParams
 from tiskel.progress import SILENT, Span
 
 SINGLE = CurveWarning(
@@ -50,9 +55,7 @@ def curve(trace: Trace, params: LaplacianParams, span: Span = SILENT) -> MethodC
         raise TiskelError("the contraction has no rings; run tiskel contract again with --method lbc or gls")
     span.at(0, "samples")
     samples, owner = front_samples(trace.points, params.radius * diagonal(trace.cloud))
-    joined = inherited_edges(trace.rings, owner, trace.points[samples])
-    span.at(0.5, "triangles")
-    nodes, edges, into = collapse_triangles(trace.points[samples], joined)
+    nodes, edges, into = _graph(trace.rings, owner, trace.points[samples], params, span)
     node_of_point = into[owner][trace.survivor_of()]
     owned = np.isin(np.arange(len(nodes)), node_of_point)
     sources = np.where(owned, RadiusSource.MEASURED, RadiusSource.UNKNOWN).astype(np.uint8)
@@ -61,6 +64,19 @@ def curve(trace: Trace, params: LaplacianParams, span: Span = SILENT) -> MethodC
     if not params.raw:
         graph, node_of_point = without_spurs(graph, trace.cloud, node_of_point)
     return MethodCurve(graph, node_of_point, trace.points, warnings)
+
+
+def _graph(
+    rings: Rings, owner: Indices, samples: Points, params: LaplacianParams, span: Span
+) -> tuple[Points, Edges, Indices]:
+    """Return the nodes and edges of a curve through samples, and the node of every sample."""
+    if isinstance(params, GlsParams) and params.variant == "toolbox":
+        placed, joined = without_straight(join_counts(rings, owner, samples), samples)
+    else:
+        placed, joined = samples, inherited_edges(rings, owner, samples)
+    span.at(0.5, "triangles")
+    nodes, edges, into = collapse_triangles(placed, joined)
+    return without_lost(nodes, edges, into, samples)
 
 
 def without_spurs(graph: CurveGraph, cloud: Points, node_of_point: Indices) -> tuple[CurveGraph, Indices]:

@@ -1,6 +1,11 @@
 """GLSkeleton: contraction with local point reduction and the explained-score stop (Wen et al. 2024).
 
-Choices where print is silent or the toolbox differs:
+Choices where print is silent or the toolbox differs (its own is :mod:`tiskel.methods.laplacian.toolbox_gls`):
+
+- V1 has W_L squared, which print lacks (Eq 3.10): W_L grows by s_L a step, and V1 is what it weighs. V2 has w_h(0),
+  as in the derivation; with w_h(k) the shrinkage would count twice.
+- At least ``min_steps`` steps are kept, as in the toolbox: by the printed rule alone (Eq 3.15) most clouds stop after
+  one. The step that meets the rule is discarded.
 
 - Ring sizes are always those of the rings as they are, merged ones included.
 - e(k) is the score of the contracted cloud before its removal; the change is divided by the share of points kept.
@@ -16,9 +21,9 @@ import numpy as np
 
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.geometry.neighbours import surroundings
-from tiskel.geometry.rings import Rings, cotangent_laplacian, mean_ring_length, smallest_distances
+from tiskel.geometry.rings import Rings, cotangent_laplacian, smallest_distances
 from tiskel.geometry.solve import SingularStep, contracted
-from tiskel.methods.laplacian.lbc import RINGS, USUAL_STEPS, grew, next_weights, weighted
+from tiskel.methods.laplacian.lbc import RINGS, USUAL_STEPS, first_weight, grew, next_weights, weighted
 from tiskel.methods.laplacian.reduction import Merge, matching, merge, stage_function
 from tiskel.methods.trace import Status, StepRecord, Trace
 from tiskel.params import GlsParams
@@ -66,7 +71,7 @@ def contract_gls(
     span.at(0, "rings")
     with watch.measure("rings"):
         state = _start(points, params)
-    first_weight, first_count = state.contraction, len(points)
+    initial, first_count = state.contraction, len(points)
     merged_into, merged_step = np.full(first_count, -1, np.int32), np.full(first_count, -1, np.int32)
     steps: list[StepRecord] = []
     history: list[tuple[Indices, Points]] = []
@@ -89,7 +94,7 @@ def contract_gls(
             break
         sizes = smallest_distances(there, state.rings)
         with step_watch.measure("reduce"):
-            reduced = _reduce(state, there, delta, sizes, params, first_weight * params.growth ** (number + 2))
+            reduced = _reduce(state, there, delta, sizes, params, initial * params.growth ** (number + 2))
         removed = reduced.merged_into >= 0
         merged_into[state.rows[removed]] = state.rows[reduced.merged_into[removed]]
         merged_step[state.rows[removed]] = number + 1
@@ -125,10 +130,10 @@ def explained_score(points: Points) -> float:
 def _start(points: Points, params: GlsParams) -> _State:
     _, axes, rings = surroundings(points, params.neighbours_for(len(points)))
     everyone = np.arange(len(points), dtype=np.int32)
-    weight = 1 / (5 * mean_ring_length(points, rings, count_first_twice=False))
+    weight = first_weight(points, rings, params, count_first_twice=False)
     return _State(
         everyone, points, axes[:, 2], points, rings, smallest_distances(points, rings),
-        weight, np.ones(len(points)), explained_score(points), len(points),
+        weight, np.full(len(points), params.attraction_weight), explained_score(points), len(points),
     )  # fmt: skip
 
 
@@ -152,8 +157,8 @@ def _reduce(state: _State, there: Points, delta: Points, sizes: Numbers, params:
     before = smallest_distances(state.points, state.rings)
     shrinkage = params.epsilon * float((before.sum() - sizes.sum()) / state.first_sizes.sum())
     stage = stage_function(
-        state.origin, there, delta, state.rings, state.first_sizes, sizes,
-        shrinkage=shrinkage, contraction_weight=weight, guard=params.guard,
+        state.origin, there, delta, state.rings, state.first_sizes, sizes, shrinkage=shrinkage,
+        contraction_weight=weight, attraction_weight=params.attraction_weight, guard=params.guard,
     )  # fmt: skip
     pairs = matching(there, state.rings, stage < params.phi * sizes**2)
     vanishing = np.linalg.norm(delta, axis=1) == 0

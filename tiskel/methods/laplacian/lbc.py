@@ -46,8 +46,8 @@ def contract_lbc(
     with watch.measure("rings"):
         rings = published_rings(points, params.neighbours_for(len(points)))
     first_sizes = smallest_distances(points, rings)
-    contraction = 1 / (5 * mean_ring_length(points, rings, count_first_twice=True))
-    attraction = np.ones(len(points))
+    contraction = first_weight(points, rings, params, count_first_twice=True)
+    attraction = np.full(len(points), params.attraction_weight)
     here, status = points, Status.MAX_STEPS
     steps: list[StepRecord] = []
     history: list[tuple[Indices, Points]] = []
@@ -77,6 +77,29 @@ def contract_lbc(
         cloud=points, points=here, rows=everyone, merged_into=never, merged_step=never, history=tuple(history),
         steps=tuple(steps), status=status, rings=rings, ring_seconds=watch.seconds["rings"],
     )  # fmt: skip
+
+
+def first_weight(points: Points, rings: Rings, params: LaplacianParams, *, count_first_twice: bool) -> float:
+    """Return W_L of the first step: 1 / (5 times the mean ring length), unless it is given.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in normalised coordinates.
+    rings : Rings
+        Of all points.
+    params : LaplacianParams
+        ``contraction_weight`` counts.
+    count_first_twice : bool
+        Whether to do as the toolbox, see :func:`tiskel.geometry.rings.mean_ring_length`.
+
+    Returns
+    -------
+    float
+    """
+    if params.contraction_weight is not None:
+        return params.contraction_weight
+    return 1 / (5 * mean_ring_length(points, rings, count_first_twice=count_first_twice))
 
 
 def published_rings(points: Points, k: int) -> Rings:
@@ -189,7 +212,7 @@ def next_weights(
     first_sizes : (n,) float64
         S_i(0), the ring sizes before all contraction.
     sizes : (n,) float64
-        S_i(k), those after this step; where both are 0, W_H is 1.
+        S_i(k), those after this step; where both are 0, W_H is W_H(0).
     params : LaplacianParams
         Growth s_L and the caps of both weights.
 
@@ -201,7 +224,7 @@ def next_weights(
         W_H, capped.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        attraction = np.nan_to_num(first_sizes / sizes, nan=1.0, posinf=np.inf)
+        attraction = params.attraction_weight * np.nan_to_num(first_sizes / sizes, nan=1.0, posinf=np.inf)
     return min(contraction * params.growth, params.max_contraction_weight), np.minimum(
         attraction, params.max_attraction_weight
     )

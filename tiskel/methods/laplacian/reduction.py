@@ -10,7 +10,7 @@ Departures from the toolbox, which departs from its paper (the paper is followed
 - An open merged ring needs three members like a closed one; the toolbox asks for four.
 - A step without a merge does not turn reduction off.
 
-With the toolbox's departures put back, tests/reference/gls.py leaves its points, one for one, on four of five clouds.
+With the toolbox's departures, :mod:`tiskel.methods.laplacian.toolbox_gls` leaves its points, one for one.
 """
 
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ class Merge:
 
 def stage_function(
     origin: Points, points: Points, delta: Points, rings: Rings, first_sizes: Numbers, sizes: Numbers, *,
-    shrinkage: float, contraction_weight: float, guard: float,
+    shrinkage: float, contraction_weight: float, attraction_weight: float = 1.0, guard: float,
 ) -> Numbers:  # fmt: skip
     """Return F = V1 - V2 + 3 U of every point.
 
@@ -69,6 +69,8 @@ def stage_function(
         psi' = epsilon psi.
     contraction_weight : float
         s_L^(k+2) w_l(0).
+    attraction_weight : float
+        w_h(0).
     guard : float
         Stands in for eta s_i(0) where that is not positive.
 
@@ -89,7 +91,7 @@ def stage_function(
         sizes,
         shrinkage,
         contraction_weight,
-        1.0,
+        attraction_weight,
         guard,
         out,
     )
