@@ -12,7 +12,7 @@ from tiskel.cli import options as o
 from tiskel.cli.common import common
 from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
-from tiskel.params import Bars, MetricParams, Normalisation
+from tiskel.params import Bars, BetaRule, MetricParams, Normalisation
 
 if TYPE_CHECKING:
     from tiskel.arrays import Points
@@ -68,6 +68,24 @@ NormaliseName = Annotated[
 NoDiagonal = Annotated[
     bool, typer.Option("--no-diagonal", help="Match bars with bars only, as in print.", rich_help_panel="Method")
 ]
+BetaName = Annotated[
+    BetaRule,
+    typer.Option(
+        "--beta",
+        help="Boundedness by the hull of directions, by the printed map of them, or as in the toolbox.",
+        rich_help_panel="Method",
+    ),
+]
+Bounded = Annotated[
+    float, typer.Option("--bounded", metavar="B", help="beta*, least of what is bounded.", rich_help_panel="Method")
+]
+Centred = Annotated[
+    float, typer.Option("--centred", metavar="C", help="c*, least of what is centred.", rich_help_panel="Method")
+]
+Similar = Annotated[
+    float,
+    typer.Option("--similar", metavar="D", help="d*, distances of similar topology.", rich_help_panel="Method"),
+]
 MetricSeed = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.", rich_help_panel="Method")]
 AsCsv = Annotated[bool, typer.Option("--csv", help="CSV instead of JSON.", rich_help_panel="Output")]
 HeatFile = Annotated[
@@ -90,6 +108,10 @@ def metrics(
     curve: CurveFile = None,
     bars: BarRule = METRICS.bars,
     no_diagonal: NoDiagonal = not METRICS.diagonal,
+    beta: BetaName = METRICS.beta,
+    bounded: Bounded = METRICS.bounded,
+    centred: Centred = METRICS.threshold,
+    similar: Similar = METRICS.similar,
     normalise: NormaliseName = METRICS.normalise,
     seed: MetricSeed = METRICS.seed,
     as_json: o.AsJson = False,
@@ -102,7 +124,10 @@ def metrics(
     A table on a terminal, otherwise JSON, one line for each skeleton: `tiskel metrics gls.ply lbc.ply`. Curves of
     other programs come with their cloud: `tiskel metrics --cloud scan.ply --curve other.swc | jq .inside`
     """
-    params = MetricParams(bars=bars, diagonal=not no_diagonal, normalise=normalise, seed=seed)
+    params = MetricParams(
+        bars=bars, diagonal=not no_diagonal, beta=beta, bounded=bounded, threshold=centred, similar=similar,
+        normalise=normalise, seed=seed,
+    )  # fmt: skip
     if as_json and as_csv:
         raise TiskelError("--json and --csv exclude each other; choose one")
     given: list[Path | None] = [*(sources or ())] or [None]

@@ -15,7 +15,7 @@ from tiskel.geometry.oriented import OrientedCloud, oriented_cloud, places_insid
 from tiskel.geometry.representatives import few_places
 from tiskel.metrics import smoothness
 from tiskel.metrics.barcode import Barcode, barcode
-from tiskel.metrics.boundedness import Boundedness, boundedness
+from tiskel.metrics.boundedness import Boundedness, boundedness_by
 from tiskel.metrics.centredness import curve_centredness, point_centredness
 from tiskel.metrics.loop_points import loop_rows
 from tiskel.metrics.loops import Loops, count_loops
@@ -159,7 +159,7 @@ def _measures(
     samples = curve_samples(subject.curve, params.curve_samples)
     places = np.concatenate([subject.points, samples.points])
     with watch.measure("boundedness"):
-        bounded = boundedness(places, subject.cloud)
+        bounded = boundedness_by(places, subject.cloud, params.beta, params.bounded)
     with watch.measure("inside"):
         inside = places_inside(surface, places)
     of_points, of_curve = slice(0, len(subject.points)), slice(len(subject.points), len(places))

@@ -115,7 +115,7 @@ def _areas(places: Points, seen: Lists, view: View, slack: float, thin: bool, ro
     )  # fmt: skip
     for row in np.flatnonzero(areas < 0):
         d = view.points - places[row]
-        areas[row] = _hull_area(unit(d[d.any(axis=1)]))
+        areas[row] = hull_area(unit(d[d.any(axis=1)]))
     return areas / (4 * np.pi)
 
 
@@ -160,7 +160,7 @@ def cell_centres(side: int) -> Points:
     return unit(np.concatenate(centres))
 
 
-def _hull_area(vectors: Points) -> float:
+def hull_area(vectors: Points) -> float:
     """Return the surface area of the convex hull of unit vectors (n, 3); of a flat one both sides count."""
     try:
         return float(ConvexHull(vectors).area)

@@ -1,7 +1,7 @@
 """Shares and counts that the documents of measures are made of."""
 
 from tiskel.arrays import Mask
-from tiskel.metrics.boundedness import COVERED, HULL, OUTSIDE, Boundedness
+from tiskel.metrics.boundedness import COVERED, HULL, MAP, OUTSIDE, Boundedness
 
 
 def share(mask: Mask | None) -> float | None:
@@ -16,5 +16,6 @@ def settled(b: Boundedness) -> dict[str, int]:
         "settled_by_coverage": int((b.settled_by == COVERED).sum()),
         "settled_by_outside": int((b.settled_by == OUTSIDE).sum()),
         "settled_by_hull": int((b.settled_by == HULL).sum()),
+        "settled_by_map": int((b.settled_by == MAP).sum()),
         "at_a_cloud_point": int((b.coincident > 0).sum()),
     }

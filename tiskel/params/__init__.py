@@ -28,7 +28,7 @@ from tiskel.params.methods import (
     published_neighbours,
     settings_of,
 )
-from tiskel.params.metrics import Bars, MetricParams
+from tiskel.params.metrics import Bars, BetaRule, MetricParams
 from tiskel.params.pipeline import PipelineParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
 from tiskel.params.shape import ShapeParams
@@ -40,6 +40,7 @@ __all__ = [
     "MIN_POINTS",
     "SIDE",
     "Bars",
+    "BetaRule",
     "ConditioningParams",
     "ContractionParams",
     "FrameRule",

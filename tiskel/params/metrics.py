@@ -1,13 +1,15 @@
 """Settings of the measures."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import Literal, get_args
 
 from tiskel.errors import TiskelError
-from tiskel.params.checks import among, at_least
+from tiskel.params.checks import among, at_least, between
 from tiskel.params.methods import MIN_POINTS, Normalisation
 
 Bars = Literal["toolbox", "max"]
+BetaRule = Literal["hull", "print", "toolbox"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,9 +25,11 @@ class MetricParams:
 
     bars: Bars = "toolbox"  #: which H0 bars are compared: [T], or those longer than every nearest-neighbour distance
     diagonal: bool = True  #: bars may be matched to the diagonal [T]; the paper has bijections only
+    beta: BetaRule = "hull"  #: boundedness by the hull of directions, by the printed map of them, or as in the toolbox
+    bounded: float = 0.75  #: beta*, bounded is what has at least that much; others than 0.75 take the hull in full
     similar: float = 0.02  #: d*, the topology is similar where d_B and d_W are below
     normalise: Normalisation = "side"  #: what is scaled to 1.6: the longest side [T], or the diagonal
-    threshold: float = 0.75  #: overall centredness is the share above [T]
+    threshold: float = 0.75  #: c*, overall centredness is the share above [T]
     curve_samples: int = 200  #: places on the curve, about so many [T]
     slab: float = 0.01  #: half the thickness of a cross-section, as a share of the diagonal [T]
     gap: float = 1.5  #: a section ends where the next point is so many times as far away [T]
@@ -37,6 +41,10 @@ class MetricParams:
 
     def __post_init__(self) -> None:
         among("bars", self.bars, get_args(Bars))
+        among("beta", self.beta, get_args(BetaRule))
+        for name in ("bounded", "threshold"):
+            between(name, getattr(self, name), 0, 1)
+        between("similar", self.similar, 0, inf)
         among("normalise", self.normalise, get_args(Normalisation))
         for name in ("curve_samples", "tangent_neighbours", "smooth_neighbours"):
             at_least(name, getattr(self, name), 1)
