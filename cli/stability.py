@@ -2,7 +2,7 @@
 
 import json
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,13 +11,27 @@ from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
 from tiskel.cli.progress import reading, shown
+from tiskel.params import Orientation, StabilityParams
 
 if TYPE_CHECKING:
     from tiskel.metrics.stability import Stability
 
 
+NormalsRule = Annotated[
+    Orientation,
+    typer.Option(
+        "--normals",
+        help="Which angles pictures show: normals away from the final points, towards the origin as published, or at "
+        "random.",
+        rich_help_panel="Method",
+    ),
+]
+
+
 @common
-def stability(source: o.Source, as_json: o.AsJson = False, plot: o.Plot = None) -> None:
+def stability(
+    source: o.Source, normals: NormalsRule = StabilityParams.normals, as_json: o.AsJson = False, plot: o.Plot = None
+) -> None:
     """Say whether a contraction is stable: how normals and curvatures change from step to step.
 
     Reads contraction.ply. A table on a terminal, JSON otherwise:
@@ -28,7 +42,7 @@ def stability(source: o.Source, as_json: o.AsJson = False, plot: o.Plot = None) 
 
     with shown(reading(source)) as progress:
         contraction = read_contraction(source)
-        result = assess_stability(contraction, progress=progress)
+        result = assess_stability(contraction, StabilityParams(normals=normals), progress=progress)
     if plot is not None:
         from tiskel.pictures.canvas import picture_kind
         from tiskel.pictures.stability import stability_picture
@@ -55,7 +69,10 @@ def _table(result: "Stability"):  # type: ignore[no-untyped-def]
         ["skewness", *(f"{step.angle.skewness:.2f}" for step in steps)],
         ["peaks", *(str(step.angle.peaks) for step in steps)],
         ["distance from a curve's", *(f"{step.distance:.3f}" for step in steps)],
-        ["that of random signs", *(f"{step.control_distance:.3f}" for step in steps)],
+        ["towards the origin: mean", *(f"{step.origin.mean:.3f}" for step in steps)],
+        ["skewness", *(f"{step.origin.skewness:.2f}" for step in steps)],
+        ["random signs: mean", *(f"{step.control.mean:.3f}" for step in steps)],
+        ["distance of random signs", *(f"{step.control_distance:.3f}" for step in steps)],
         ["change of curvature: median", *(f"{step.median_curvature:+.4f}" for step in steps)],
         ["in the hull before", *(f"{step.in_hull:.3f}" for step in steps)],
         ["inside the cloud", *("" if step.in_cloud is None else f"{step.in_cloud:.3f}" for step in steps)],

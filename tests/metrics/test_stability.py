@@ -20,7 +20,8 @@ from tiskel import (
     shape_graph,
 )
 from tiskel.arrays import Points
-from tiskel.metrics.stability import distance_from_uniform, distribution, oriented_normals, peaks
+from tiskel.metrics.distributions import distance_from_uniform, distribution, peaks
+from tiskel.metrics.stability import oriented_normals
 from tiskel.pictures.stability import stability_picture
 
 PARAMS = StabilityParams()
@@ -52,6 +53,21 @@ def test_the_hammer_is_stable_and_random_signs_are_no_evidence(method: Method, r
     result = assess_stability(contract(reference_cloud("hammer"), ContractionParams(method=method)))
     assert result.stable, result.reason
     assert not any(step.control_passes for step in result.steps)
+
+
+def test_towards_the_origin_the_hammer_does_what_is_published(reference_cloud: Load) -> None:
+    """Proposition 4.2 and Fig 4.12: first skewed, at last symmetric about 1/2; one rule before and after says 1/4."""
+    c = contract(reference_cloud("hammer"), ContractionParams(method="lbc"))
+    result = assess_stability(c, StabilityParams(normals="origin"))
+    assert [step.origin.mean for step in result.steps] == pytest.approx([0.302, 0.391, 0.493], abs=0.003)
+    assert [step.origin.skewness for step in result.steps] == pytest.approx([0.89, 0.43, 0.0], abs=0.04)
+    assert [step.control.mean for step in result.steps] == pytest.approx([0.5] * 3, abs=0.02)
+    assert 0.2 < result.steps[-1].angle.mean < 0.3  # a quarter on a curve
+    assert result.steps[-1].angles.mean() == result.steps[-1].origin.mean
+    usual, random = assess_stability(c), assess_stability(c, StabilityParams(normals="random"))
+    assert usual.steps[-1].angles.mean() == usual.steps[-1].angle.mean
+    assert random.steps[-1].angles.mean() == random.steps[-1].control.mean
+    assert result.stable == usual.stable == random.stable
 
 
 @pytest.mark.parametrize("method", ["lbc", "gls"])

@@ -5,38 +5,29 @@ after, the angle between the two is then uniform between 0 and a right angle: D 
 and skewness 0. On a surface that has hardly moved D is near 0; where points have drifted along the shape it exceeds
 1/2. The distance from uniform is judged, and the change of curvature, which grows where a clump or thick tube is left.
 
-Departure from print: there the normals have no orientation, and mean 1/2 with skewness 0 is taken as a sign of
-stability. Random signs alone give that on every cloud: the control beside each step shows it, and fails the test here.
+Departure from print (Proposition 4.2, Fig 4.12): there D is first skewed, then symmetric about 1/2, and that is taken
+as a sign of stability. It is so with normals oriented towards the origin, as the author's routine does: a contracted
+cloud has its origin to one side here, to the other there. It is not so with normals oriented by one rule before and
+after, and with random signs it is so at every step, on every cloud, good or bad. All three are reported; the verdict is
+by the first rule, and the control by random signs fails the test. ``normals`` says whose angles the pictures show.
 """
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy.signal import find_peaks
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Mask, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
+from tiskel.metrics.distributions import UNIFORM_UP_TO, Distribution, distance_from_uniform, distribution
 from tiskel.metrics.hulls import outside_hull
 from tiskel.params import StabilityParams
 from tiskel.progress import Report, Span
 
-UNIFORM_UP_TO = 0.5  # of D on a curve: a right angle
 BEYOND = 0.12  # share of angles over a right one that is named as the reason
-SPAN = {"angle": (0.0, 1.0), "curvature": (-1 / 3, 1 / 3)}  # what values can be
-
-
-@dataclass(frozen=True)
-class Distribution:
-    """The shape of a distribution; its values have no unit."""
-
-    mean: float  #: arithmetic mean
-    spread: float  #: standard deviation
-    skewness: float  #: 0 where there is no spread
-    peaks: int  #: number of peaks of the histogram
 
 
 @dataclass(frozen=True)
@@ -45,10 +36,11 @@ class StepStability:
 
     Attributes
     ----------
-    angles : (m,) float64, D_theta = arccos(n_k . n_0) / pi of each point.
+    angles : (m,) float64, D_theta = arccos(n_k . n_0) / pi of each point, under the rule that was asked for.
     curvatures : (m,) float64, kappa_k - kappa_0 of each point.
-    angle : Distribution of the angles.
+    angle : Distribution of the angles with normals away from the final points.
     curvature : Distribution of the curvatures.
+    origin : Distribution of the angles with normals towards the origin, as the author's routine orients them.
     control : Distribution of the angles under random signs.
     distance : float, the largest difference of the angles' cumulative distribution from the uniform one on [0, 1/2].
     control_distance : float, the same of the control.
@@ -64,6 +56,7 @@ class StepStability:
     curvatures: Numbers
     angle: Distribution
     curvature: Distribution
+    origin: Distribution
     control: Distribution
     distance: float
     control_distance: float
@@ -155,13 +148,20 @@ def assess_stability(
     surface, outward = oriented_cloud(*_surface_arguments(c)), c.origin - c.points
     normals, curvature = oriented_normals(c.origin, outward, params.neighbours)
     signs = np.random.default_rng(params.seed).integers(2, size=len(c.origin))
+    centre = (c.cloud.min(axis=0) + c.cloud.max(axis=0)) / 2  # the origin of normalised coordinates
+    facing = _faces(normals, centre - c.origin)
     before, steps = c.origin, []
     for number, positions in enumerate(c.history, 1):
         span.at(number / (len(c.history) + 1), f"step {number}")
         turned, bent = oriented_normals(positions, outward, params.neighbours)
         angles = np.arccos(np.clip(np.einsum("ij,ij->i", normals, turned), -1, 1)) / np.pi
-        places = _containment(positions, before, surface)
-        steps.append(_judged(angles, bent - curvature, np.where(signs, angles, 1 - angles), places, params))
+        faces = _faces(turned, centre - positions)
+        by_rule = {
+            "outward": angles,
+            "origin": np.where(facing == faces, angles, 1 - angles),
+            "random": np.where(signs, angles, 1 - angles),
+        }
+        steps.append(_judged(by_rule, bent - curvature, _containment(positions, before, surface), params))
         before = positions
     span.at(1)
     return Stability(tuple(steps), len(c.origin), params)
@@ -182,6 +182,12 @@ def oriented_normals(points: Points, outward: Points, neighbours: int) -> tuple[
     return normals * sign[:, None], np.divide(values[:, 2], total, out=np.zeros(len(points)), where=total > 0)
 
 
+def _faces(normals: Points, towards: Points) -> Mask:
+    """Return (m,) whether normals (m, 3) look towards a place, by their largest component alone [T]."""
+    largest = np.abs(normals).argmax(axis=1)[:, None]
+    return np.asarray(np.take_along_axis(normals * towards, largest, axis=1)[:, 0] > 0)
+
+
 def _containment(points: Points, before: Points, surface: OrientedCloud) -> tuple[float, float | None]:
     """Return the shares of points in the convex hull of the step before, and inside the original cloud."""
     inside = float(surface.contains(points).mean()) if surface.trusted else None
@@ -189,16 +195,19 @@ def _containment(points: Points, before: Points, surface: OrientedCloud) -> tupl
 
 
 def _judged(
-    angles: Numbers, curvatures: Numbers, control: Numbers, places: tuple[float, float | None], params: StabilityParams
+    by_rule: dict[str, Numbers], curvatures: Numbers, places: tuple[float, float | None], params: StabilityParams
 ) -> StepStability:
+    """Judge a step by its angles under the three rules of orientation, changes of curvature, and shares inside."""
+    angles, control = by_rule["outward"], by_rule["random"]
     distance, median = distance_from_uniform(angles), float(np.median(curvatures))
     stable, reason = verdict(distance, median, angles, params)
     control_distance = distance_from_uniform(control)
     return StepStability(
-        angles=angles,
+        angles=by_rule[params.normals],
         curvatures=curvatures,
         angle=distribution(angles, "angle", params),
         curvature=distribution(curvatures, "curvature", params),
+        origin=distribution(by_rule["origin"], "angle", params),
         control=distribution(control, "angle", params),
         distance=distance,
         control_distance=control_distance,
@@ -209,26 +218,6 @@ def _judged(
         stable=stable,
         reason=reason,
     )
-
-
-def distance_from_uniform(angles: Numbers) -> float:
-    """Return the largest difference of the angles' cumulative distribution from the uniform one on [0, 1/2]."""
-    uniform = np.clip(np.sort(angles) / UNIFORM_UP_TO, 0, 1)
-    steps = np.arange(len(angles) + 1) / len(angles)
-    return float(max((steps[1:] - uniform).max(), (uniform - steps[:-1]).max()))
-
-
-def distribution(values: Numbers, kind: str, params: StabilityParams) -> Distribution:
-    """Return mean, spread, skewness and peaks of values (m,); kind "angle" or "curvature" says what they can be."""
-    mean, spread = float(values.mean()), float(values.std())
-    skewness = float(((values - mean) ** 3).mean() / spread**3) if spread > 0 else 0.0
-    return Distribution(mean, spread, skewness, peaks(values, SPAN[kind], params))
-
-
-def peaks(values: Numbers, span: tuple[float, float], params: StabilityParams) -> int:
-    """Return the number of peaks of the histogram of values (m,): it falls by the prominence on both sides of each."""
-    shares = np.histogram(values, params.bins, span)[0] / len(values)
-    return len(find_peaks(np.concatenate([[0], shares, [0]]), prominence=params.prominence)[0])
 
 
 def verdict(distance: float, median: float, angles: Numbers, params: StabilityParams) -> tuple[bool, str]:

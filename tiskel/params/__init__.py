@@ -33,7 +33,7 @@ from tiskel.params.pipeline import PipelineParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
 from tiskel.params.shape import ShapeParams
 from tiskel.params.skeleton import SkeletonParams
-from tiskel.params.stability import StabilityParams
+from tiskel.params.stability import Orientation, StabilityParams
 from tiskel.params.surface import FrameRule, OrderRule, SurfaceParams
 
 __all__ = [
@@ -55,6 +55,7 @@ __all__ = [
     "Normalisation",
     "Normals",
     "OrderRule",
+    "Orientation",
     "PipelineParams",
     "Place",
     "RegimeChoice",

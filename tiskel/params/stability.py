@@ -1,8 +1,11 @@
 """Settings of the stability of a contraction."""
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
-from tiskel.params.checks import at_least
+from tiskel.params.checks import among, at_least
+
+Orientation = Literal["outward", "origin", "random"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +26,9 @@ class StabilityParams:
     0.12
     """
 
+    #: whose angles the result holds and pictures show: of normals away from the final points, towards the origin as the
+    #: author's routine has them, or of random signs; the verdict is always by the first
+    normals: Orientation = "outward"
     neighbours: int = 9  #: whose scatter gives normal and curvature, the point included [T]
     bins: int = 50  #: of the histograms whose peaks are counted
     prominence: float = 0.02  #: a peak falls by so large a share of the points on both sides
@@ -31,5 +37,6 @@ class StabilityParams:
     seed: int = 0  #: of the random signs of the control
 
     def __post_init__(self) -> None:
+        among("normals", self.normals, get_args(Orientation))
         at_least("neighbours", self.neighbours, 4)
         at_least("bins", self.bins, 2)

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from tiskel.contraction import Contraction
-from tiskel.metrics.stability import SPAN, Stability, StepStability
+from tiskel.metrics.distributions import SPAN
+from tiskel.metrics.stability import Stability, StepStability
 from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
 
 WIDTH, HEIGHT, TITLE = 3.2, 2.9, 0.4  # inches per panel
