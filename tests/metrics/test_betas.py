@@ -48,7 +48,7 @@ def test_few_directions_have_no_area() -> None:
 
 @pytest.mark.slow
 def test_an_apple_tree_is_bounded_as_published(reference_cloud: Load) -> None:
-    """Table 4.2: 0.830 of the skeletal points of the synthetic tree of 8936 points; all of them give 0.82 here."""
+    """Table 4.2: 0.830 of the skeletal points of the synthetic tree of 8936 points; all of them give 0.830 here."""
     cloud = condition(reference_cloud("apple_tree"), ConditioningParams(voxel=0.02))[0]
     assert len(cloud) == 8936
     frame = normalisation(cloud)
