@@ -72,9 +72,9 @@ def walk(flat: Table) -> list[int]:
     Examples
     --------
     >>> walk(np.array([[0.0, 0], [1, 0], [0, 1], [-1, 0], [0, -1.1]]))
-    [1, 4, 3, 2, 1]
-    >>> walk(np.array([[0.0, 0], [1, 0.1], [0, 1]]))
-    [1, 2]
+    [3, 4, 1, 2, 3]
+    >>> walk(np.array([[0.0, 0], [1, 0.1], [1, 1], [0, 1]]))
+    [1, 3]
     """
     try:
         triangles = Delaunay(flat, qhull_options="QJ Pp").simplices.tolist()
