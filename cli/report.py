@@ -50,19 +50,21 @@ def _surfaces(result: "PipelineResult") -> str:
     """Return tables of surfaces and runs with their pictures, and why there are none."""
     parts = []
     if result.surfaces is not None:
-        head = ("branch", "length", "radius", "order", "misfit", "frame", "slices", "warnings")
+        head = ("branch", "length", "radius", "order", "misfit", "unseen", "frame", "slices", "warnings")
         rows: list[tuple[object, ...]] = [
             (
-                s.name, f"{s.length:.6g}", f"{s.radius:.4g}", s.order, f"{s.error:.2%}", s.frame,
+                s.name, f"{s.length:.6g}", f"{s.radius:.4g}", s.order, f"{s.error:.2%}", f"{s.unseen:.0%}", s.frame,
                 ", ".join(f"{count} {case}" for case, count in s.cases().items()), "; ".join(s.warnings),
             )
             for s in result.surfaces
         ]  # fmt: skip
-        rows += [(branch, "", "", "", "", "", "", why) for branch, why in result.surfaces.rejected.items()]
+        rows += [(branch, "", "", "", "", "", "", "", why) for branch, why in result.surfaces.rejected.items()]
         parts += [_row(head, "th"), *map(_row, rows), IMAGE.format("slices.png", "slices, a section, the surface")]
     if result.trajectories:
         parts += [_row((key, *(r.as_dict()[key] for r in result.trajectories))) for key in TOLD]
         parts.append(IMAGE.format("roll.png", "the contact on object and sphere, and the states over time"))
+    said = [m.text for m in messages.of_coverage(result.surfaces)] if result.surfaces is not None else []
+    parts.append(f"</table><p>{html.escape('; '.join(said))}</p><table>")
     return f"<table>{''.join(parts)}</table><p>{html.escape(result.reason)}</p>"
 
 

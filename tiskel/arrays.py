@@ -17,6 +17,7 @@ Stack = np.ndarray[tuple[int, int, int], np.dtype[np.float64]]  #: shape (n, k, 
 Floats = npt.NDArray[np.float64]  #: any number of axes, as the docstring says
 Indices = np.ndarray[tuple[int], np.dtype[np.int32]]  #: shape (n,): rows of something
 Edges = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (e, 2), or (e, 3) for triangles
+Labels = npt.NDArray[np.uint8]  #: small codes, any number of axes, as the docstring says
 Lists = np.ndarray[tuple[int, int], np.dtype[np.int32]]  #: shape (n, k): a row of rows for each of n
 Pairs = np.ndarray[tuple[int, int], np.dtype[np.integer[Any]]]  #: shape (l, 2) or (l, k), integers of any width
 Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]  #: shape (n,)

@@ -79,15 +79,29 @@ def of_stability(stability: "Stability") -> Messages:
 
 
 def of_surfaces(surfaces: "Surfaces") -> Messages:
-    """Return a line for every surface, why other branches have none, then the warnings."""
+    """Return a line for every surface, why other branches have none, how much they cover, then the warnings."""
     rejected = (f"branch {name} has no surface: {reason}" for name, reason in surfaces.rejected.items())
     warnings = (warning for surface in surfaces for warning in surface.warnings)
-    return (*said(map(_surface, surfaces)), *said(rejected), *warned(warnings))
+    return (*said(map(_surface, surfaces)), *said(rejected), *of_coverage(surfaces), *warned(warnings))
+
+
+def of_coverage(surfaces: "Surfaces") -> Messages:
+    """Return how much the surfaces cover, nothing where a file of an older version does not say."""
+    c = surfaces.coverage
+    if c is None:
+        return ()
+    off = ", ".join(f"{name} {c.radii[key]:.2g}" for name, key in (("mean", "mean"), ("95 %", "p95"), ("most", "max")))
+    line = (
+        f"{c.points:.0%} of the points lie within 5 % of the local radius of a surface, {c.length:.0%} of the curve "
+        f"has one; all points are off by local radii of {off}"
+    )
+    return said([line])
 
 
 def _surface(s: "FittedSurface") -> str:
     off, cases = s.distance, ", ".join(f"{count} {case}" for case, count in s.cases().items())
     frame = f"frame {s.frame}" + (f" ({s.note})" if s.note else "")
+    frame += f"; {s.unseen:.0%} of it unseen and rounded off" if s.unseen > 0 else ""
     return (
         f"branch {s.name}: length {s.length:.6g}, radius {s.radius:.4g}, order {s.order}, slices: {cases}; {frame}; "
         f"distance to {len(s.rows)} points: mean {off['mean']:.3g}, 95 % {off['p95']:.3g}, most {off['max']:.3g}"

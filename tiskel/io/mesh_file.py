@@ -12,13 +12,14 @@ def dump_mesh(mesh: Mesh, source: dict[str, str] | None = None) -> bytes:
     Parameters
     ----------
     mesh : Mesh
-        Triangles, counter-clockwise seen from outside.
+        Triangles, counter-clockwise seen from outside; their trust, where known, is a property of the vertices.
     source : dict, optional
         Name and SHA-256 of the input.
     """
     faces: dict[str, Any] = {"vertex_indices": ply.ragged(list(mesh.triangles))}
+    corners = ply.xyz(mesh.vertices) | ({} if mesh.trust is None else {"trust": mesh.trust})
     elements = [
-        ply.element("vertex", ply.xyz(mesh.vertices)),
+        ply.element("vertex", corners),
         ply.element("face", faces, {"vertex_indices": ("u1", "i4")}),
     ]
     return ply.dump(elements, "mesh", {"source": source or {}})

@@ -30,7 +30,7 @@ class SurfaceParams:
     most_order: int = 8  #: [T]
     fit_error: float = 1e-3  #: of the published rule [T]
     recentre: bool = True  #: the skeleton curve moves to the middles of its sections before the surface is fitted
-    gap: float = pi / 2  #: a section that misses a larger angle is rejected
+    gap: float = pi  #: a section that misses a larger angle is rejected; what is unseen of others is rounded off
     least_points: int = 12  #: a section of fewer is rejected
     uneven: float = 0.45  #: share of the radius that a point of a star-shaped section is off at most, but for a tenth
 

@@ -4,11 +4,15 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tiskel.arrays import Indices, Points
+import numpy as np
+
+from tiskel.arrays import Floats, Indices, Labels, Points
 from tiskel.errors import TiskelError
-from tiskel.slicing.sections import Section
+from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.jets import Jet, Scalar
-from tiskel.surfaces.tube import Tube
+from tiskel.surfaces.tube import V_STOP, Tube
+
+BRIDGED, UNSEEN, MEASURED = 0, 1, 2  # trust in a place: slices without a fit, a side without points, points all about
 
 
 @dataclass(frozen=True)
@@ -89,9 +93,56 @@ class FittedSurface:
         """Return the surface and its derivatives at (u, v), in radians."""
         return self.tube.jet(u, v)
 
+    @property
+    def unseen(self) -> float:
+        """The share of the surface's turn and length that no points say anything of: sides without points."""
+        return float(np.mean([section.unseen / (2 * np.pi) for section in self.sections]))
+
+    def trust(self, u: Floats, v: Floats) -> Labels:
+        """Return how far places u and v, arrays of one shape in radians, are to be trusted.
+
+        2 where points say that the surface is there, 1 on a side of which its slice has none, 0 where it was bridged.
+        """
+        count = len(self.sections)
+        near = np.floor(np.asarray(v) / V_STOP * count).astype(int)
+        near = np.mod(near, count) if self.tube.closed else np.clip(near, 0, count - 1)
+        unseen, at = (np.array([getattr(s, name) for s in self.sections])[near] for name in ("unseen", "gap_at"))
+        off = np.abs(np.mod(np.asarray(u) - np.nan_to_num(at) + np.pi, 2 * np.pi) - np.pi)
+        found = np.where((off < unseen / 2) & np.isfinite(at), UNSEEN, MEASURED)
+        return np.where(np.array([s.case is Case.FITTED for s in self.sections])[near], found, BRIDGED).astype(np.uint8)
+
+    def roughness(self, v: float) -> float:
+        """Return how far points are off the section at v, in the input's unit: robust RMS, in between linearly."""
+        fitted = [section for section in self.sections if section.case is Case.FITTED]
+        rough = [section.error * section.series[0] for section in fitted]
+        period = V_STOP if self.tube.closed else None
+        return float(np.interp(v, [section.v for section in fitted], rough, period=period))
+
     def cases(self) -> dict[str, int]:
         """Return how many slices there are of each case, those beyond the ends among them."""
         return dict(Counter(section.case.value for section in self.sections) + Counter(self.trimmed))
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """How much of a cloud and its curve has a surface, and how far all points are from the nearest one.
+
+    Attributes
+    ----------
+    points : float
+        Share of the points, without stray ones, within a twentieth of the local radius of a surface, from 0 to 1.
+    length : float
+        Share of the curve's length with a surface, bridged slices included, from 0 to 1.
+    distance : dict of str to float
+        "mean", "p95" and "max" of the distances of all points but stray ones, in the input's unit.
+    radii : dict of str to float
+        The same in local radii: of each point in the mean radius of the section nearest to it.
+    """
+
+    points: float
+    length: float
+    distance: dict[str, float]
+    radii: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -106,6 +157,8 @@ class Surfaces:
         Why each of the other branches has no surface, by its name.
     cloud : (n, 3) float64
         The cloud, in the input's unit.
+    coverage : Coverage or None
+        How much of cloud and curve they cover; None in files of older versions.
 
     Examples
     --------
@@ -119,6 +172,7 @@ class Surfaces:
     surfaces: tuple[FittedSurface, ...]
     rejected: dict[str, str]
     cloud: Points
+    coverage: Coverage | None = None
 
     def __len__(self) -> int:
         return len(self.surfaces)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Edges, Numbers, Points, Stack
+from tiskel.arrays import TINY, Edges, Labels, Numbers, Points, Stack
 from tiskel.geometry.bspline import BSplineCurve
 from tiskel.geometry.ellipse import fit_ellipse
-from tiskel.slicing.fitted import FittedSurface
+from tiskel.slicing.fitted import BRIDGED, FittedSurface
 from tiskel.slicing.sections import Section
 from tiskel.surfaces.tube import V_STOP, Tube, radius_of
 
@@ -26,10 +26,14 @@ class Mesh:
         The corners, in the input's unit.
     triangles : (q, 3) int32
         Their rows, counter-clockwise seen from outside.
+    trust : (p,) uint8 or None
+        Of every corner: 2 where points say that it is there, 1 on a side of which there are none, 0 where slices were
+        bridged and on caps; None where nothing is known of it.
     """
 
     vertices: Points
     triangles: Edges
+    trust: Labels | None = None
 
 
 def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
@@ -47,29 +51,35 @@ def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
     Mesh
     """
     closed = surface.tube.closed
-    rows = PER_SLICE * len(surface.sections)
-    u = np.arange(AROUND) / AROUND * 2 * np.pi
-    v = np.linspace(0, V_STOP, rows, endpoint=not closed)
-    grid = np.stack(surface.jet(*np.meshgrid(u, v)).f, axis=-1)
+    u, v = np.meshgrid(np.arange(AROUND) / AROUND * 2 * np.pi, row_places(surface))
+    rows, grid = len(v), np.stack(surface.jet(u, v).f, axis=-1)
     number = np.arange(rows * AROUND, dtype=np.int32).reshape(rows, AROUND)
     after = np.roll(number, -1, axis=0) if closed else number[1:]
     here = number[: len(after)]
     corners = [here, np.roll(here, -1, axis=1), after, np.roll(after, -1, axis=1)]
     a, b, c, d = (corner.ravel() for corner in corners)
     triangles = [np.stack([a, b, d], axis=1), np.stack([a, d, c], axis=1)]
-    vertices = [grid.reshape(-1, 3)]
+    vertices, trust = [grid.reshape(-1, 3)], surface.trust(u, v).ravel()
     if caps and not closed:
+        trust = np.append(trust, [BRIDGED, BRIDGED])
         vertices.append(surface.tube.curve(np.array([0.0, V_STOP])))
         for row, tip in ((number[0, ::-1], rows * AROUND), (number[-1], rows * AROUND + 1)):
             triangles.append(np.stack([row, np.roll(row, -1), np.full(AROUND, tip)], axis=1))
-    return Mesh(np.concatenate(vertices), np.concatenate(triangles).astype(np.int32))
+    return Mesh(np.concatenate(vertices), np.concatenate(triangles).astype(np.int32), trust.astype(np.uint8))
+
+
+def row_places(surface: FittedSurface) -> Numbers:
+    """Return v (r,) of the rows of vertices of its mesh."""
+    return np.linspace(0, V_STOP, PER_SLICE * len(surface.sections), endpoint=not surface.tube.closed)
 
 
 def joined_mesh(meshes: list[Mesh]) -> Mesh:
     """Return several meshes as one, their vertices one after the other."""
     offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     triangles = [mesh.triangles + offset for mesh, offset in zip(meshes, offsets[:-1], strict=True)]
-    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles).astype(np.int32))
+    known = [mesh.trust for mesh in meshes if mesh.trust is not None]
+    trust = np.concatenate(known) if len(known) == len(meshes) else None
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles).astype(np.int32), trust)
 
 
 def distances_to_mesh(points: Points, mesh: Mesh) -> Numbers:
@@ -107,7 +117,7 @@ def mesh_report(surface: FittedSurface) -> dict[str, float]:
 
 
 def slice_table(surface: FittedSurface) -> list[dict[str, object]]:
-    """Return a row per slice: v, place, case, points, gap, error; of the surface area, perimeter, radius, ellipse."""
+    """Return a row per slice: v, place, case, points, gap, unseen angle, error; area, perimeter, radius, ellipse."""
     return [_row(surface.name, number, surface.tube, section) for number, section in enumerate(surface.sections)]
 
 
@@ -116,7 +126,8 @@ def _row(branch: str, number: int, tube: Tube, section: Section) -> dict[str, ob
     area, perimeter, longer, shorter = measures(tube.series, section.v)
     return {
         "branch": branch, "slice": number, "v": section.v, "x": x, "y": y, "z": z, "case": section.case.value,
-        "points": section.points, "gap": section.gap, "error": None if np.isnan(section.error) else section.error,
+        "points": section.points, "gap": section.gap, "unseen": section.unseen,
+        "error": None if np.isnan(section.error) else section.error,
         "area": area, "perimeter": perimeter, "equivalent_radius": float(np.sqrt(area / np.pi)),
         "major": longer, "minor": shorter,
     }  # fmt: skip

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points, Table
+from tiskel.arrays import Indices, Mask, Numbers, Points, Table
 from tiskel.geometry.bspline import BSplineCurve
-from tiskel.geometry.graph import component_labels
+from tiskel.slicing.parts import parts_of
 from tiskel.surfaces.tube import Moving, moving_frame
 
 SECTORS = 36  # directions that a section is looked at in
@@ -35,6 +34,10 @@ class Ring:
     u: Numbers
     v: Numbers
     r: Numbers
+
+    def part(self, kept: Mask) -> "Ring":
+        """Return the points of a mask (k,) alone."""
+        return Ring(self.rows[kept], self.u[kept], self.v[kept], self.r[kept])
 
 
 def frames_along(axis: BSplineCurve, field: BSplineCurve, v: Numbers) -> Moving:
@@ -106,8 +109,7 @@ def ring_of(plane: Table, link: float) -> Indices:
     """
     if len(plane) == 0:
         return np.zeros(0, np.int32)
-    pairs = cKDTree(plane).query_pairs(link, output_type="ndarray")
-    part = component_labels(len(plane), pairs)
+    part = parts_of(plane, link)
     r, u = np.linalg.norm(plane, axis=1), np.arctan2(plane[:, 1], plane[:, 0])
     sector = np.floor((u + np.pi) / (2 * np.pi) * SECTORS).astype(int) % SECTORS
     order = np.lexsort((r, sector))

@@ -7,9 +7,10 @@ import numpy as np
 from tiskel.geometry.bspline import BSplineCurve, fit_bspline
 from tiskel.params import SurfaceParams
 from tiskel.slicing.rings import Ring
-from tiskel.slicing.sections import Case, Section, fit_section, left_out_error
+from tiskel.slicing.sections import Case, Section, fit_section, left_out_error, rim_of
 from tiskel.surfaces.tube import V_STOP
 
+SIMPLER = 1.02  # factor on the error of points left out that one order more must save: noise alone saves nothing
 UNLIKE, LEAST_UNLIKE = 3.0, 0.08  # median errors, and mean radii, that a section is off its points at most
 BRIDGED = 0.1  # weight of what stands in for a rejected slice
 JUDGED = 30  # sections that choose the order
@@ -17,7 +18,9 @@ ENDS = (0, 1, 0.0), (-1, -2, V_STOP)  # the sections that say where the surface 
 
 
 def chosen_order(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> int:
-    """Return the order of the series up to which points that are left out are met better and better.
+    """Return the order of the series by which points that are left out are met best, a simpler one where it is as good.
+
+    All orders are tried: a section with symmetry has no odd harmonics, and the next order alone would say nothing.
 
     Parameters
     ----------
@@ -26,17 +29,25 @@ def chosen_order(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> int:
     params : SurfaceParams
         ``least_order`` and ``most_order`` count.
     """
-    tried = [fit_section(v, ring, params.least_order, params) for v, ring in pairs]
-    good = [pair for pair, section in zip(pairs, tried, strict=True) if section.case is Case.FITTED]
-    judged = good[:: -(-len(good) // JUDGED) or 1]
-    order, least = params.least_order, _judged(judged, params.least_order)
-    while judged and order < params.most_order and (error := _judged(judged, order + 1)) < least:
-        order, least = order + 1, error
-    return order
+    orders = range(params.least_order, params.most_order + 1)
+    judged = _judges(pairs, params)
+    errors = [_judged(judged, order) * SIMPLER ** (order - params.least_order) for order in orders]
+    return orders[int(np.argmin(errors))]
 
 
-def fit_sections(pairs: list[tuple[float, Ring]], order: int, params: SurfaceParams) -> tuple[Section, ...]:
+def _judges(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> list[tuple[float, Ring]]:
+    """Return the slices that choose the order: those that the lowest or the highest order fits."""
+    ends = params.least_order, params.most_order
+    good = [pair for pair in pairs if any(fit_section(*pair, order, params).case is Case.FITTED for order in ends)]
+    return good[:: -(-len(good) // JUDGED) or 1]
+
+
+def fit_sections(
+    pairs: list[tuple[float, Ring]], order: int, params: SurfaceParams, closed: bool = False
+) -> tuple[Section, ...]:
     """Return the sections, all of one order, or each of its own, as published.
+
+    Slices at the ends that lie in a face are fitted to its rim.
 
     Parameters
     ----------
@@ -46,6 +57,8 @@ def fit_sections(pairs: list[tuple[float, Ring]], order: int, params: SurfacePar
         The order of the series, unless the rule is "published".
     params : SurfaceParams
         The settings.
+    closed : bool
+        Whether the skeleton curve is a loop, without ends.
 
     Returns
     -------
@@ -53,7 +66,15 @@ def fit_sections(pairs: list[tuple[float, Ring]], order: int, params: SurfacePar
     """
     if params.order_rule == "published":
         return without_unlike(tuple(_published(v, ring, params) for v, ring in pairs))
-    return without_unlike(tuple(fit_section(v, ring, order, params) for v, ring in pairs))
+    found = list(without_unlike(tuple(fit_section(v, ring, order, params) for v, ring in pairs)))
+    for way in () if closed else (range(len(found)), range(len(found) - 1, -1, -1)):
+        for i in way:
+            if found[i].case is Case.FITTED or (rim := rim_of(pairs[i][1])) is None:
+                break
+            faced = fit_section(pairs[i][0], rim, order, params)
+            if faced.case is Case.FITTED and faced.error < LEAST_UNLIKE:
+                found[i] = faced
+    return tuple(found)
 
 
 def without_unlike(sections: tuple[Section, ...]) -> tuple[Section, ...]:
@@ -61,7 +82,7 @@ def without_unlike(sections: tuple[Section, ...]) -> tuple[Section, ...]:
     errors = np.array([section.error for section in sections if section.case is Case.FITTED])
     most = max(UNLIKE * float(np.median(errors)), LEAST_UNLIKE) if len(errors) else np.inf
     return tuple(
-        replace(section, case=Case.NOT_STAR, series=np.zeros(0), error=np.nan) if section.error > most else section
+        replace(section, case=Case.ROUGH, series=np.zeros(0), error=np.nan) if section.error > most else section
         for section in sections
     )
 

@@ -2,20 +2,28 @@
 
     {"tiskel": version of the writer, "stage": "surface", "format": 1, "source", "params",
      "rejected": {branch: reason}, "cloud": [[x, y, z], ...],
+     "coverage": {"points", "length", "distance": {"mean", "p95", "max"}, "radii": {"mean", "p95", "max"}} or null,
      "surfaces": [{"branch", "nodes", "closed", "frame", "note", "length", "radius", "order", "error", "warnings",
                    "trimmed", "distance": {"mean", "p95", "max"}, "rows",
                    "axis", "field", "series": coefficients of quintic B-splines,
-                   "sections": [{"v", "case", "points", "gap", "error", "series"}, ...]}, ...]}
+                   "unseen", "sections": [{"v", "case", "points", "gap", "gap_at", "error", "series"}, ...]}, ...]}
 
 Lengths are in the input's unit, angles in radians, rows count from 0 in
 ``cloud``. A spline with b rows of coefficients has b - 5 even intervals from
 v = 0 to pi; of a closed surface the last five rows repeat the first five. The
 columns of ``axis`` are x, y, z of the skeleton curve, of ``field`` those of m,
 of ``series`` a0, a1, b1, a2, b2, ...; ``error`` is the RMS misfit over the mean
-radius, ``distance`` that of the fitted points to the mesh of the surface.
+radius, ``distance`` that of the fitted points to the mesh of the surface. The
+largest angle without a point of a slice is ``gap``, its middle ``gap_at``;
+``unseen`` is the share of turn and length that lies in such sides. ``coverage``
+tells of all points but stray ones: the share within a twentieth of the local
+radius of a surface, distances, and the same in local radii; of the curve the
+share of its length with a surface. Files of older versions have neither
+``coverage`` nor ``gap_at`` and are read as before.
 """
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +35,7 @@ from tiskel.geometry.bspline import DEGREE, BSplineCurve
 from tiskel.io import ply
 from tiskel.io.streams import read_bytes, write_bytes
 from tiskel.params import SurfaceParams
-from tiskel.slicing.fitted import FittedSurface, Surfaces
+from tiskel.slicing.fitted import Coverage, FittedSurface, Surfaces
 from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.tube import V_STOP, Tube
 from tiskel.version import version
@@ -79,6 +87,7 @@ def dump_surfaces(
         "source": source or {},
         "params": None if params is None else ply.plain(params),
         "rejected": surfaces.rejected,
+        "coverage": None if surfaces.coverage is None else asdict(surfaces.coverage),
         "surfaces": [_surface_document(surface) for surface in surfaces],
         "cloud": surfaces.cloud.tolist(),
     }
@@ -89,7 +98,7 @@ def _surface_document(s: FittedSurface) -> dict[str, Any]:
     return {
         "branch": s.name, "nodes": s.nodes.tolist(), "closed": s.tube.closed, "frame": s.frame, "note": s.note,
         "length": s.length, "radius": s.radius, "order": s.order, "error": s.error, "warnings": list(s.warnings),
-        "trimmed": s.trimmed, "distance": s.distance, "rows": s.rows.tolist(),
+        "trimmed": s.trimmed, "unseen": s.unseen, "distance": s.distance, "rows": s.rows.tolist(),
         "axis": s.tube.axis.coefficients.tolist(), "field": s.tube.field.coefficients.tolist(),
         "series": s.tube.series.coefficients.tolist(), "sections": [_section_document(one) for one in s.sections],
     }  # fmt: skip
@@ -99,7 +108,8 @@ def _section_document(section: Section) -> dict[str, Any]:
     error = None if np.isnan(section.error) else section.error
     return {
         "v": float(section.v), "case": section.case.value, "points": section.points, "gap": section.gap,
-        "error": error, "series": section.series.tolist(),
+        "gap_at": None if np.isnan(section.gap_at) else section.gap_at, "error": error,
+        "series": section.series.tolist(),
     }  # fmt: skip
 
 
@@ -162,12 +172,20 @@ def parse_surfaces(data: bytes, name: str) -> Surfaces:
     try:
         cloud = np.array(document["cloud"], np.float64).reshape(-1, 3)
         surfaces = tuple(_surface_of(one, cloud) for one in document["surfaces"])
+        coverage = _coverage_of(document.get("coverage"))
         rejected = {str(branch): str(reason) for branch, reason in document["rejected"].items()}
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise TiskelError(f"{name} is a damaged surface file: {error!r}; run tiskel slice again") from None
     if not surfaces:
         raise TiskelError(f"{name} holds no surface; run tiskel slice again")
-    return Surfaces(surfaces, rejected, cloud)
+    return Surfaces(surfaces, rejected, cloud, coverage)
+
+
+def _coverage_of(one: dict[str, Any] | None) -> Coverage | None:
+    if one is None:
+        return None
+    distance, radii = ({key: float(one[name][key]) for key in ("mean", "p95", "max")} for name in ("distance", "radii"))
+    return Coverage(float(one["points"]), float(one["length"]), distance, radii)
 
 
 def _surface_of(one: dict[str, Any], cloud: Points) -> FittedSurface:
@@ -206,4 +224,5 @@ def _strip(rows: Any, closed: bool) -> BSplineCurve:
 def _section_of(one: dict[str, Any]) -> Section:
     error = np.nan if one["error"] is None else float(one["error"])
     series = np.array(one["series"], np.float64)
-    return Section(float(one["v"]), Case(one["case"]), series, int(one["points"]), float(one["gap"]), error)
+    gap_at = np.nan if one.get("gap_at") is None else float(one["gap_at"])
+    return Section(float(one["v"]), Case(one["case"]), series, int(one["points"]), float(one["gap"]), error, gap_at)
