@@ -1,12 +1,13 @@
 """Options of the commands that slice and roll."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 import typer
 
 from tiskel.cli.options import PIPELINE
 from tiskel.cli.stages import numbers_of
+from tiskel.errors import TiskelError
 from tiskel.params import FrameRule, Model, Normals, OrderRule, RollParams, Side, SurfaceParams, Twist
 
 if TYPE_CHECKING:
@@ -88,8 +89,8 @@ TwistName = Annotated[
     Twist,
     typer.Option(
         "--twist",
-        help="Whose twist: the object's relative to the sphere in the contact frame; the sphere's in its own; the "
-        "sphere's in the axes of the cloud.",
+        help="Whose twist: the object's relative to the sphere in the contact frame; the sphere's in axes fixed in "
+        "it; the sphere's in the axes of the cloud.",
         rich_help_panel="Method",
     ),
 ]
@@ -176,7 +177,7 @@ def roll_settings(
             rate=rate,
             start=(u, v, us, vs, psi),
             start_at=None if start_at is None else three("--start-at", start_at),
-            normals=normals if one == "global" else "surface",
+            normals=normals if model != "both" or one == "global" else "surface",
             rtol=rtol,
             atol=atol,
         )
@@ -188,6 +189,23 @@ def three(option: str, value: str) -> tuple[float, float, float]:
     """Return the three numbers of an option."""
     x, y, z = numbers_of(option, value, 3)
     return x, y, z
+
+
+def refuse_both(inputs: bool) -> None:
+    """Raise where a constant twist was given beside a file of inputs, which holds both of its parts."""
+    from click import get_current_context
+
+    context = get_current_context()
+    given = [f"--{name}" for name in ("omega", "velocity") if is_given(context.get_parameter_source(name))]
+    if inputs and given:
+        raise TiskelError(
+            f"--inputs holds omega and velocity over time, {' and '.join(given)} would not count; drop one"
+        )
+
+
+def is_given(source: Any) -> bool:
+    """Tell whether an option has its value from the command line or the environment."""
+    return source is not None and not source.name.startswith("DEFAULT")
 
 
 def inputs_of(path: Path | None) -> "Inputs | None":

@@ -162,6 +162,12 @@ def test_bad_tables_end_with_one_line(text: str, said: str, tiskel: Runner, tmp_
 
 def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
     tiskel("slice", skeleton.name, "-o", "f.json")
+    (tmp_path / "w.csv").write_text("t,wx,wy,wz\n0,0,1,0\n1,0,1,0\n")
+    far = tiskel(
+        "roll", "f.json", "--json", "--duration", 1, "--start-at", "9,9,9", "--model", "both", "--normals", "pca"
+    )
+    assert b"the place to start at is" in far.stderr
+    assert b"--normals pca counts for the global model" in far.stderr
     newer = {**json.loads((tmp_path / "f.json").read_bytes()), "format": 9}
     (tmp_path / "newer.json").write_text(json.dumps(newer))
     for words, said in (
@@ -174,6 +180,8 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
         (("f.json", "--omega", "a,b,c"), "--omega needs 3 numbers"),
         (("f.json", "--rtol", 0), "rtol must be a positive number, got 0"),
         (("f.json", "--velocity", "0,0,1"), "velocity along the normal must be 0"),
+        (("f.json", "--model", "local", "--normals", "pca"), "the local model has its curvature from the Fourier"),
+        (("f.json", "--inputs", "w.csv", "--omega", "1,0,0"), "--omega would not count; drop one"),
     ):
         assert said in one_error_line(tiskel("roll", *words))
     still = tiskel("roll", "f.json", "--omega", "0,0,0", "--json", "--duration", 1)

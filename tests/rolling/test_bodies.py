@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
+from reference.tubes import tube
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.bodies import roll_body
 from tiskel.rolling.roll import roll
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import RollStatus
-from tiskel.surfaces.analytic import Cone, Ellipsoid, Torus, sphere
+from tiskel.surfaces.analytic import Cone, Ellipsoid, Plane, Torus, sphere
 
 SHARP = RollParams(radius=0.3, omega=(0.5, 0.3, 0.4), velocity=(0.02, 0.01, 0), start=(0.3, 1.0, 0.1, 0.1, 0.4),
                    duration=3.0, rate=20.0, rtol=1e-10, atol=1e-12)  # fmt: skip
@@ -63,3 +64,32 @@ def test_a_run_ends_at_the_apex_of_a_cone() -> None:
                                                                   duration=60.0))  # fmt: skip
     assert r.status in (RollStatus.LEFT, RollStatus.STUCK)
     assert r.state[-1, 1] < 0.1
+
+
+def test_a_body_stops_at_the_end_of_its_own_branch() -> None:
+    """A barrel rolled along itself over a plane: it ran on over what its series says beyond its end."""
+    v = np.linspace(0, np.pi, 200)
+    barrel = tube(np.stack([v, 0 * v, 0 * v], axis=1), np.stack([1 + 0.3 * np.sin(v), 0 * v, 0 * v], axis=1))
+    for way in (1.0, -1.0):
+        p = RollParams(side="inside", omega=(way, 0, 0), start=(0, 0, 0.3, 1.0, 0), duration=60.0)
+        r = roll_body(Plane(), barrel, p)
+        assert r.status is RollStatus.LEFT
+        assert "the body came to the end of its own branch" in r.reason
+        assert min(abs(r.state[-1, 3]), abs(r.state[-1, 3] - np.pi)) < 1e-6
+
+
+def test_a_pole_of_the_chart_is_named() -> None:
+    """Straight over the pole of an ellipsoid: this was told as bodies that bend alike."""
+    p = RollParams(side="inside", omega=(0.0, -1.0, 0.0), start=(0.0, 0, 0, 0, 0), duration=10)
+    r = roll_body(Plane(), Ellipsoid(0.3, 0.4, 0.25), p)
+    assert r.status is RollStatus.POLE
+    assert r.reason.startswith("the contact came to a pole of the chart of the body, at u = +-pi/2")
+    for way in (1.0, -1.0):
+        q = RollParams(omega=(0.0, way, 0.0), start=(way * -1.56, 0, 0, 0, 0))
+        over = roll_body(Ellipsoid(3, 4, 2.5), sphere(0.3), q)
+        assert over.status is RollStatus.POLE
+        assert "of the chart of the object" in over.reason
+    with pytest.raises(
+        TiskelError, match="the start lies outside: the contact came to a pole of the chart of the body"
+    ):
+        roll_body(Plane(), sphere(0.3), RollParams(side="inside", start=(0.0, 0, 1.5707963, 0, 0)))

@@ -1,12 +1,13 @@
 """Whole runs: against a sphere driven in SE(3), closed forms, events, inputs, and what cannot begin."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import cos, pi
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from reference.rolling import pose_over_time
 from reference.tubes import bent_tube, straight_tube, tube
@@ -23,7 +24,7 @@ from tiskel.rolling.sphere import orientation, rotation_of
 from tiskel.rolling.trajectory import RollStatus
 from tiskel.surfaces.analytic import Cone, EllipticCylinder, Plane, Torus, cylinder
 from tiskel.surfaces.forms import forms_of
-from tiskel.surfaces.jets import ParametricSurface
+from tiskel.surfaces.jets import Jet, ParametricSurface
 from tiskel.surfaces.nearest import nearest_place
 
 SHARP: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12, "meet": False}
@@ -195,12 +196,11 @@ def test_the_three_conventions_of_a_twist_are_one_motion() -> None:
     p = RollParams(radius=0.1, omega=(0.5, 0.8, 0.3), velocity=(0.02, -0.01, 0), duration=2.0, rate=200.0, **SHARP)
     r = roll(BENT, p)
     world, own = [], []
-    for u, v, _, _, psi in r.state:
+    for (u, v), pose in zip(r.state[:, :2], rotation_of(r.orientation), strict=True):
         frame = np.array(forms_of(BENT.jet(float(u), float(v)))[:3], float).T
-        turn = np.array([[np.cos(psi), -np.sin(psi), 0], [-np.sin(psi), -np.cos(psi), 0], [0, 0, -1]])
         parts = np.array([p.omega, p.velocity])
         world.append((-frame @ parts.T).T.ravel())
-        own.append((-turn @ parts.T).T.ravel())
+        own.append((-pose.T @ frame @ parts.T).T.ravel())
     conventions: list[tuple[Any, Any]] = [("world", world), ("sphere", own)]
     for twist, rows in conventions:
         again = roll(BENT, replace(p, twist=twist), Inputs(r.t, np.array(rows)))
@@ -296,6 +296,9 @@ def test_the_run_starts_at_the_surface_point_nearest_to_a_place() -> None:
     outward = np.array(forms_of(BENT.jet(0.8, 1.7)).z, float)
     r = roll(BENT, RollParams(radius=0.1, duration=0.1, start_at=tuple((target + 0.2 * outward).tolist())))
     np.testing.assert_allclose(r.contact[0], target, atol=1e-9)
+    assert r.warnings == ()
+    away = roll(BENT, RollParams(radius=0.1, duration=0.1, start_at=tuple((target + 5 * outward).tolist())))
+    assert "the place to start at is" in away.warnings[0]
 
 
 def test_the_summary_holds_plain_finite_numbers() -> None:
@@ -325,8 +328,25 @@ def test_a_run_ends_where_the_sphere_meets_another_part_of_the_cloud(capsule_sur
     # Met is what is deeper in than 5 % of the radius; the event is found to a step of the root finder.
     assert r.centre[-1, 2] == pytest.approx(0.3 - 0.095, abs=0.005)
     assert roll(walled, replace(p, meet=False)).status is RollStatus.LEFT
-    with pytest.raises(TiskelError, match="points away from the contact lie in it; start elsewhere"):
+    with pytest.raises(TiskelError, match="points away from the contact lie in it; start at u = "):
         roll(walled, replace(p, start_at=(0.2, 0.0, 0.28)))
+    poor = replace(walled, error=4.24)  # a misfit that says nothing of the surface here: the run ends all the same
+    assert roll(poor, p).status is RollStatus.MET
+
+
+def test_a_run_ends_where_points_about_the_contact_lie_deep_in_the_sphere(capsule_surface: FittedSurface) -> None:
+    """A ridge 0.05 high around the rod at z = 0.3, which the surface does not follow: half a radius of the sphere."""
+    turn = np.linspace(0, 2 * np.pi, 400)
+    ridge = np.stack([0.25 * np.cos(turn), 0.25 * np.sin(turn), np.full(400, 0.3)], axis=1)
+    ridged = replace(capsule_surface, cloud=np.concatenate([capsule_surface.cloud, ridge]))
+    up = 1.0 if capsule_surface.tube.curve(np.array([1.0]))[0, 2] < 0 else -1.0
+    p = RollParams(radius=0.1, omega=(up, 0, 0), start=(0.3, pi / 2, 0, 0, 0), duration=30.0)
+    r = roll(ridged, p)
+    assert r.status in (RollStatus.OFF, RollStatus.MET)
+    deep = 1 - np.linalg.norm(r.centre[:, None] - ridge, axis=2).min(axis=1) / 0.1
+    assert deep.max() < 0.21
+    with pytest.raises(TiskelError, match="points about the contact lie deep in it"):
+        roll(ridged, replace(p, start_at=(0.2, 0.0, 0.3)))
 
 
 def test_rolling_over_a_fitted_surface_is_rolling_over_the_body(capsule_surface: FittedSurface) -> None:
@@ -358,3 +378,72 @@ def test_operators_of_neighbours_find_the_curvature_of_a_dense_sphere() -> None:
 
 def test_the_usual_sphere_is_a_quarter_of_the_branch(capsule_surface: FittedSurface) -> None:
     assert roll(capsule_surface, RollParams(duration=0.1)).radius == pytest.approx(0.05, rel=0.02)
+
+
+def test_a_twist_in_axes_fixed_in_the_sphere_is_no_trap() -> None:
+    """A constant one turns the sphere about one of its own axes: of a plane a straight way, and few steps."""
+    p = RollParams(radius=0.5, twist="sphere", omega=(0.6, -0.9, 0.4), duration=10.0, start=(0, 0, 0.1, 0.1, 0.3))
+    r = roll(Plane(), replace(p, **SHARP))
+    assert r.status is RollStatus.FINISHED
+    assert roll(Plane(), p).evaluations < 2000
+    turned = rotation_of(r.orientation[-1]).T @ rotation_of(r.orientation[0])
+    np.testing.assert_allclose(turned, Rotation.from_rotvec(-10 * np.array(p.omega)).as_matrix(), atol=1e-8)
+
+
+def test_local_curvature_is_not_that_of_neighbours() -> None:
+    with pytest.raises(TiskelError, match="the local model has its curvature from the Fourier series"):
+        RollParams(model="local", normals="pca")
+
+
+@pytest.mark.parametrize(("a", "b"), [(pi / 2, pi / 2), (1.0, 0.7), (2.5, 0.3)])
+def test_a_rectangle_turns_the_sphere_by_its_holonomy(a: float, b: float) -> None:
+    """Rolled by the angles a, b, -a, -b without spin: cos(turn / 2) = 1 - 2 sin^2(a / 2) sin^2(b / 2).
+
+    Of four turns about two fixed axes across each other (T. Honein, O. O'Reilly, on reorienting a sphere by rolling it
+    along a rectangle).
+    """
+    p = RollParams(radius=0.5, start=(0.0, 0.0, 0.3, 0.2, 0.4), meet=False, rtol=1e-12, atol=1e-14)
+    poses, start, place = [], p.start, np.zeros(3)
+    for axis, angle in ((1, a), (0, b), (1, -a), (0, -b)):
+        omega = tuple(np.sign(angle) * (np.arange(3) == axis))
+        r = roll(Plane(), replace(p, omega=omega, duration=abs(angle), start=start))
+        start = tuple(r.state[-1].tolist())
+        poses += [rotation_of(r.orientation[0]), rotation_of(r.orientation[-1])]
+        place = r.contact[-1]
+    np.testing.assert_allclose(place, 0, atol=1e-9)
+    turn = Rotation.from_matrix(poses[-1] @ poses[0].T).magnitude()
+    assert np.cos(turn / 2) == pytest.approx(1 - 2 * np.sin(a / 2) ** 2 * np.sin(b / 2) ** 2, abs=1e-9)
+
+
+@dataclass(frozen=True)
+class PolarPlane:
+    """f = (v cos u, v sin u, 0): circles about the origin are lines of u."""
+
+    v_range = (0.0, np.inf)
+    periods = (2 * pi, None)
+
+    def jet(self, u: Any, v: Any) -> Jet:
+        c, s, zero = np.cos(u), np.sin(u), 0 * (u + v)
+        return Jet(
+            (v * c, v * s, zero), (-v * s, v * c, zero), (c + zero, s + zero, zero),
+            (-v * c, -v * s, zero), (-s + zero, c + zero, zero), (zero, zero, zero),
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 3.0])
+def test_a_circle_on_a_plane_turns_the_sphere_as_it_should(ratio: float) -> None:
+    """Once around a circle of so many radii, without spin: a turn by 2 pi sqrt(1 + ratio^2), about a tilted axis."""
+    radius = 0.5
+    p = RollParams(
+        radius=radius, omega=(0.0, -1.0, 0.0), duration=2 * pi * ratio, start=(0.0, ratio * radius, 0.3, 0.2, 0.4),
+        meet=False, rtol=1e-12, atol=1e-14,
+    )  # fmt: skip
+    r = roll(PolarPlane(), p)
+    assert abs(r.state[-1, 0]) == pytest.approx(2 * pi, abs=1e-9)
+    assert r.state[-1, 1] == pytest.approx(ratio * radius, abs=1e-9)
+    turned = rotation_of(r.orientation[-1]) @ rotation_of(r.orientation[0]).T
+    turn = 2 * pi * np.sqrt(1 + ratio**2)
+    assert np.trace(turned) == pytest.approx(1 + 2 * np.cos(turn), abs=1e-9)
+    axis = np.array([turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]])
+    tilt = np.abs(axis / np.linalg.norm(axis))
+    np.testing.assert_allclose(tilt[2], 1 / np.sqrt(1 + ratio**2), atol=1e-6)

@@ -19,9 +19,10 @@ class RollParams:
 
     omega and velocity are those of the object relative to the sphere in the
     axes of the contact frame (twist "object"), of the sphere relative to the
-    object in the axes of the sphere's own frame at the contact ("sphere"), or
-    of the sphere in the axes of the cloud ("world"); velocities are those of
-    the material at the contact and have no part along the normal.
+    object in axes that are fixed in the sphere, as gyroscopes in it measure
+    ("sphere"), or of the sphere in the axes of the cloud ("world"). Velocities
+    are those of the material at the contact; a part along the normal does not
+    count, and is refused where it can be told.
 
     Examples
     --------
@@ -63,7 +64,9 @@ class RollParams:
             value = getattr(self, name)
             if value is not None and not 0 < value < inf:
                 raise TiskelError(f"{name} must be a positive number, got {value}")
-        if self.twist != "world" and self.velocity[2] != 0:
+        if self.model == "local" and self.normals == "pca":
+            raise TiskelError('the local model has its curvature from the Fourier series; take normals "surface"')
+        if self.twist == "object" and self.velocity[2] != 0:
             raise TiskelError(f"velocity along the normal must be 0, contact is kept; got {self.velocity[2]}")
 
     @property

@@ -1,8 +1,8 @@
 """Two bodies of any shape: the same equations with both sides general.
 
-The state is the five contact coordinates themselves; where the chart of the
-body is singular (the poles of an ellipsoid) a run cannot pass, which a sphere
-in :func:`tiskel.roll` can.
+The state is the five contact coordinates themselves; where a chart is
+singular (the poles of an ellipsoid) a run ends and says so, where a sphere in
+:func:`tiskel.roll` goes on. It ends where the contact leaves either of both.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ import numpy as np
 from tiskel.arrays import Numbers, Points, Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
-from tiskel.rolling.endings import Ending, ends_of_branch
+from tiskel.rolling.endings import Ending, ends_of_branch, poles
 from tiskel.rolling.equations import contact_rates
 from tiskel.rolling.inputs import Inputs, constant
 from tiskel.rolling.solution import Solution, solve
@@ -109,6 +109,10 @@ def roll_body(
     inputs = inputs or constant(params)
     pair = _Pair(surface, body, params.sigma)
     start = np.array(params.start)
+    ends = [*poles(surface, "object", 0), *poles(body, "body", 2), *ends_of_branch(surface), *ends_of_branch(body, 2)]
+    for ending in ends:
+        if not ending(0.0, start) >= 0:
+            raise TiskelError(f"the start lies outside: {ending.what}; start elsewhere")
     least = pair.margin(*params.start)
     if least <= 0:
         raise TiskelError(f"the body does not fit at the start: relative curvature {least:.4g}; start elsewhere")
@@ -121,7 +125,7 @@ def roll_body(
         RollStatus.TIGHT, "the bodies bend alike and would meet beside their contact",
         lambda *place: pair.margin(*place) - TOUCHING * least,
     )  # fmt: skip
-    return pair.read(solve(rate, start, params, inputs, np.inf, [tight, *ends_of_branch(surface)]))
+    return pair.read(solve(rate, start, params, inputs, np.inf, [*ends, tight]))
 
 
 @dataclass(frozen=True)

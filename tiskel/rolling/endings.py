@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite
+from math import isfinite, pi
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -14,11 +14,13 @@ from tiskel.rolling.equations import margin
 from tiskel.rolling.models import RollingModel, tube_of
 from tiskel.rolling.trajectory import RollStatus
 from tiskel.slicing.fitted import FittedSurface
+from tiskel.surfaces.analytic import Ellipsoid
 from tiskel.surfaces.forms import forms_of
 from tiskel.surfaces.jets import ParametricSurface
 
+POLAR = 1e-3  # radians from the pole of a chart: v, of no meaning there, turns ever faster
 TOUCHING = 1e-4  # of 1/R_s: with less left the contact runs away, and no solver follows it
-SUNK, ROUGH = 0.05, 4.0  # points deeper in the sphere than so many of its radii, or RMS misfits, are met
+SUNK, ROUGH, DEEPEST = 0.05, 4.0, 0.2  # of its radius that points may lie in the sphere; or RMS misfits there; at most
 
 
 @dataclass(frozen=True)
@@ -64,31 +66,67 @@ def endings(surface: ParametricSurface, model: RollingModel, params: RollParams,
             Ending(RollStatus.CLOSED, "the surface has no radius there", lambda u, v, *_: float(tube.at(u, v)[1].R)),
         ]
     if params.meet and isinstance(surface, FittedSurface):
-        found.append(Ending(RollStatus.MET, "points away from the contact lie in it", Meeting(surface, params, radius)))
+        met = Meeting(surface, params, radius)
+        found += [
+            Ending(RollStatus.MET, "points away from the contact lie in it", met.away),
+            Ending(RollStatus.OFF, "points about the contact lie deep in it, the surface is off them there", met.about),
+        ]
     return found
 
 
-def ends_of_branch(surface: ParametricSurface) -> list[Ending]:
-    """Return what ends a run where v leaves its range; nothing on surfaces without end."""
+def ends_of_branch(surface: ParametricSurface, first: int = 0) -> list[Ending]:
+    """Return what ends a run where v leaves its range; nothing on surfaces without end.
+
+    The state holds u and v of the surface from its entry ``first`` on.
+    """
     low, high = surface.v_range
     if not (isfinite(low) or isfinite(high)):
         return []
-    return [Ending(RollStatus.LEFT, "v reached the end of the branch", lambda u, v, *_: min(v - low, high - v))]
+    what = "v reached the end of the branch" if first == 0 else "the body came to the end of its own branch"
+    return [Ending(RollStatus.LEFT, what, lambda *y: min(y[first + 1] - low, high - y[first + 1]))]
+
+
+def poles(surface: ParametricSurface, name: str, first: int) -> list[Ending]:
+    """Return what ends a run in coordinates at the poles of a chart, where u ends; nothing on charts without."""
+    if not isinstance(surface, Ellipsoid):
+        return []
+    what = f"the contact came to a pole of the chart of the {name}, at u = +-pi/2, where the sphere of roll can pass"
+    return [Ending(RollStatus.POLE, what, lambda *y: pi / 2 - POLAR - abs(y[first]))]
 
 
 class Meeting:
-    """Whether the sphere meets a part of the cloud that is not about its contact."""
+    """How far the sphere is from meeting points of the cloud, those about its contact and those away from it.
+
+    Points may lie in it by a twentieth of its radius, or as far as the cloud is rough about its surface there, but
+    never by more than a fifth: where a surface is far off its points a sphere on it is no sphere on the body.
+    """
 
     def __init__(self, surface: FittedSurface, params: RollParams, radius: float) -> None:
         self.surface, self.sigma, self.radius = surface, params.sigma, radius
-        self.reach = max(radius - max(SUNK * radius, ROUGH * surface.error * surface.radius), 0.0)
         self.cloud = body_of(surface.cloud)
         self.tree = cKDTree(self.cloud)
+        self.last: tuple[tuple[float, float], tuple[float, float]] | None = None
 
-    def __call__(self, u: float, v: float, *_: float) -> float:
-        """Return -1 where points farther from the contact than the radius lie deep in the sphere, else 1."""
+    def away(self, u: float, v: float, *_: float) -> float:
+        """Return what is left, in radii of the sphere, of points farther from the contact than its radius."""
+        return self.left(u, v)[1]
+
+    def about(self, u: float, v: float, *_: float) -> float:
+        """Return what is left of the others."""
+        return self.left(u, v)[0]
+
+    def left(self, u: float, v: float) -> tuple[float, float]:
+        """Return how much deeper points may lie in the sphere, in its radii: about the contact, and away from it."""
+        if self.last is None or self.last[0] != (u, v):
+            self.last = (u, v), self._left(u, v)
+        return self.last[1]
+
+    def _left(self, u: float, v: float) -> tuple[float, float]:
         jet = self.surface.jet(u, v)
         contact = np.array(jet.f)
-        near = self.tree.query_ball_point(contact + self.radius * np.array(forms_of(jet, self.sigma).z), self.reach)
-        away = np.linalg.norm(self.cloud[near] - contact, axis=1) > self.radius
-        return -1.0 if away.any() else 1.0
+        centre = contact + self.radius * np.array(forms_of(jet, self.sigma).z)
+        allowed = min(max(SUNK, ROUGH * self.surface.roughness(v) / self.radius), DEEPEST)
+        near = self.cloud[self.tree.query_ball_point(centre, self.radius)]
+        depth = 1 - np.linalg.norm(near - centre, axis=1) / self.radius
+        away = np.linalg.norm(near - contact, axis=1) > self.radius
+        return tuple(allowed - float(depth[part].max(initial=0)) for part in (~away, away))  # type: ignore[return-value]

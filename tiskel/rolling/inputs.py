@@ -8,7 +8,6 @@ from tiskel.arrays import Numbers, Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Triple
-from tiskel.rolling.sphere import chart_of, rotation_of, turn_of
 
 PAUSE = 10.0  # times the median step between rows: a longer one is told
 
@@ -93,11 +92,6 @@ def pauses(t: Numbers) -> tuple[str, ...]:
         return ()
     row = int(steps.argmax())
     return (f"inputs: no row between t = {t[row]:g} and {t[row + 1]:g}; values there are straight in between",)
-
-
-def sphere_axes(q: Numbers) -> Table:
-    """Return R3 (3, 3), the sphere's own frame at the contact in the axes of the object's, from F^T Q."""
-    return turn_of(float(chart_of(np.eye(3), rotation_of(q))[2]))
 
 
 def of_the_object(turn: Table, omega: Triple, velocity: Triple) -> tuple[Triple, Triple]:

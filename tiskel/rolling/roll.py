@@ -11,11 +11,11 @@ from tiskel.params import RollParams
 from tiskel.progress import Report, Span
 from tiskel.rolling.endings import Ending, endings
 from tiskel.rolling.equations import frame_turn, margin
-from tiskel.rolling.inputs import Inputs, constant, of_the_object, sphere_axes
+from tiskel.rolling.inputs import Inputs, constant, of_the_object
 from tiskel.rolling.models import RollingModel, model_of, tube_of
 from tiskel.rolling.reading import path_lengths, read
 from tiskel.rolling.solution import duration_of, solve
-from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate
+from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate, rotation_of
 from tiskel.rolling.trajectory import RollStatus, Trajectory
 from tiskel.slicing.fitted import FittedSurface
 from tiskel.surfaces.forms import forms_of
@@ -27,6 +27,8 @@ USUAL_RADIUS = 0.25  # of the surface's median radius
 SLIPLESS = 1e-3  # of a way: without slip the two ways are not farther apart
 STANDING = 1e-6  # of the sphere's radius: shorter ways are rounding
 GRID = 72, 200  # places around and along where a sphere that does not fit is tried
+COARSE = 16, 32  # and where one that meets points is
+FAR = 1.0  # radii of the body, or of the sphere: places to start at that are farther from the surface are none of it
 
 
 def roll(
@@ -80,7 +82,7 @@ def roll(
     radius = params.radius or USUAL_RADIUS * median_radius(surface)
     model = model_of(surface, params, radius)
     watched = endings(surface, model, params, radius)
-    start = _start(surface, params)
+    start, far = _start(surface, params, radius)
     _check_start(surface, params, radius, start, watched)
     rate = _Rate(model, params, inputs)
     told = rate if progress is None else _told(rate, duration_of(params, inputs), span)
@@ -91,7 +93,7 @@ def roll(
         solution.t, **read(surface, model, params.sigma, radius, solution.states, params.start[4]),
         path_object=lengths[0], path_sphere=lengths[1], status=solution.status, reason=solution.reason,
         evaluations=solution.evaluations, radius=radius, params=params,
-        warnings=_warnings(inputs, lengths, radius, params),
+        warnings=far + _warnings(inputs, lengths, radius, params),
     )  # fmt: skip
 
 
@@ -124,7 +126,7 @@ class _Rate:
         forms = self.model.forms(u, v)
         omega, velocity = self.inputs.at(t)
         if self.params.twist != "object":
-            turn = self.model.frame(u, v).T if self.params.twist == "world" else sphere_axes(y[2:])
+            turn = self.model.frame(u, v).T if self.params.twist == "world" else rotation_of(y[2:])
             omega, velocity = of_the_object(turn, omega, velocity)
         moving = self.model.rates(u, v, forms, omega, velocity)
         a, b, c = frame_turn(forms, moving)
@@ -146,15 +148,21 @@ def _told(rate: _Rate, duration: float, span: Span) -> Callable[[float, Numbers]
     return call
 
 
-def _start(surface: ParametricSurface, params: RollParams) -> Numbers:
-    """Return u_o, v_o and the quaternion to begin with."""
+def _start(surface: ParametricSurface, params: RollParams, radius: float) -> tuple[Numbers, tuple[str, ...]]:
+    """Return u_o, v_o and the quaternion to begin with, and a warning where that is far from the place asked for."""
     u, v, u_s, v_s, psi = params.start
+    far: tuple[str, ...] = ()
     if params.start_at is not None:
         u, v = nearest_place(surface, np.array(params.start_at))
+        place = np.array(surface.jet(u, v).f, float)
+        off, tube = float(np.linalg.norm(place - params.start_at)), tube_of(surface)
+        if off > FAR * max(radius, 0.0 if tube is None else float(tube.at(u, v)[1].R)):
+            where = ",".join(f"{x:.4g}" for x in place)
+            far = (f"the place to start at is {off:.4g} away from the surface; the run starts at {where} (--start-at)",)
     low, high = surface.v_range
     if not low <= v <= high:
         raise TiskelError(f"the start v = {v:g} lies outside the branch, where v is from {low:g} to {high:.6g}")
-    return np.array([u, v, *quaternion_of(orientation(np.eye(3), u_s, v_s, psi))])
+    return np.array([u, v, *quaternion_of(orientation(np.eye(3), u_s, v_s, psi))]), far
 
 
 def _check_start(
@@ -166,8 +174,19 @@ def _check_start(
             told = (
                 f"a sphere of radius {radius:.4g} cannot stand {params.side} at u = {start[0]:.4g}, v = {start[1]:.4g}"
             )
-            advice = _elsewhere(surface, params, radius) if ending.status is RollStatus.TIGHT else "start elsewhere"
+            tight = ending.status is RollStatus.TIGHT
+            advice = _elsewhere(surface, params, radius) if tight else _free(surface, start, watched)
             raise TiskelError(f"{told}: {ending.what}; {advice}")
+
+
+def _free(surface: ParametricSurface, start: Numbers, watched: list[Ending]) -> str:
+    """Return the place nearest to the start, of a coarse grid, where nothing ends a run at once."""
+    low, high = surface.v_range
+    us, vs = (part.ravel() for part in even_places(surface, *COARSE))
+    for i in np.argsort(np.hypot(np.mod(us - start[0] + np.pi, 2 * np.pi) - np.pi, vs - start[1]), kind="stable"):
+        if low < vs[i] < high and all(ending(0.0, np.array([us[i], vs[i]])) > 0 for ending in watched):
+            return f"start at u = {us[i]:.4g}, v = {vs[i]:.4g}"
+    return "there is no place where it could; take another sphere or another branch"
 
 
 def _elsewhere(surface: ParametricSurface, params: RollParams, radius: float) -> str:

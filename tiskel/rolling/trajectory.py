@@ -27,6 +27,10 @@ class RollStatus(str, Enum):
         The radius of the surface is zero.
     MET
         Points away from the contact lie in the sphere.
+    OFF
+        Points about the contact lie deep in the sphere: the surface is not where the body is.
+    POLE
+        The contact came to a pole of a chart, where u and v are no coordinates; of two bodies alone.
     STUCK
         The solver found no step small enough, as at the pole of a chart.
 
@@ -47,6 +51,8 @@ class RollStatus(str, Enum):
     CROSSED = "slices cross"
     CLOSED = "the radius of the surface is zero"
     MET = "the sphere meets another part of the cloud"
+    OFF = "the surface is off the cloud"
+    POLE = "a pole of the chart"
     STUCK = "the solver gave up"
 
 
