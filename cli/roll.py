@@ -64,7 +64,7 @@ def roll(
         velocity=velocity, twist=twist, rate=rate, start_at=start_at, normals=normals,
     )  # fmt: skip
     given = so.inputs_of(inputs)
-    so.refuse_both(given is not None)
+    so.refuse_both(given is not None, omega, velocity)
     if model == "both" and normals == "pca":
         console.warn(("--normals pca counts for the global model; the local one keeps those of its surface",))
     from tiskel import roll as run

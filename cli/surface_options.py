@@ -1,7 +1,7 @@
 """Options of the commands that slice and roll."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import typer
 
@@ -191,21 +191,14 @@ def three(option: str, value: str) -> tuple[float, float, float]:
     return x, y, z
 
 
-def refuse_both(inputs: bool) -> None:
-    """Raise where a constant twist was given beside a file of inputs, which holds both of its parts."""
-    from click import get_current_context
-
-    context = get_current_context()
-    given = [f"--{name}" for name in ("omega", "velocity") if is_given(context.get_parameter_source(name))]
+def refuse_both(inputs: bool, omega: str, velocity: str) -> None:
+    """Raise where a constant twist other than the usual one comes beside a file of inputs, which holds both parts."""
+    both = ("--omega", omega, OMEGA), ("--velocity", velocity, VELOCITY)
+    given = [option for option, value, usual in both if value != usual]
     if inputs and given:
         raise TiskelError(
             f"--inputs holds omega and velocity over time, {' and '.join(given)} would not count; drop one"
         )
-
-
-def is_given(source: Any) -> bool:
-    """Tell whether an option has its value from the command line or the environment."""
-    return source is not None and not source.name.startswith("DEFAULT")
 
 
 def inputs_of(path: Path | None) -> "Inputs | None":
