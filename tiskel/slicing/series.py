@@ -13,7 +13,7 @@ from tiskel.surfaces.tube import V_STOP
 SIMPLER = 1.02  # factor on the error of points left out that one order more must save: noise alone saves nothing
 UNLIKE, LEAST_UNLIKE = 3.0, 0.08  # median errors, and mean radii, that a section is off its points at most
 BRIDGED = 0.1  # weight of what stands in for a rejected slice
-JUDGED = 30  # sections that choose the order
+JUDGED, SHOWN = 30, 1000  # sections that choose the order, and points of each: more say the same, and take longer
 ENDS = (0, 1, 0.0), (-1, -2, V_STOP)  # the sections that say where the surface ends, and its end
 
 
@@ -38,8 +38,14 @@ def chosen_order(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> int:
 def _judges(pairs: list[tuple[float, Ring]], params: SurfaceParams) -> list[tuple[float, Ring]]:
     """Return the slices that choose the order: those that the lowest or the highest order fits."""
     ends = params.least_order, params.most_order
-    good = [pair for pair in pairs if any(fit_section(*pair, order, params).case is Case.FITTED for order in ends)]
+    few = [(v, _thinned(ring)) for v, ring in pairs]
+    good = [pair for pair in few if any(fit_section(*pair, order, params).case is Case.FITTED for order in ends)]
     return good[:: -(-len(good) // JUDGED) or 1]
+
+
+def _thinned(ring: Ring) -> Ring:
+    """Return every k-th point of a ring, in the order of the cloud."""
+    return ring.part(np.arange(len(ring.u)) % -(-len(ring.u) // SHOWN) == 0) if len(ring.u) > SHOWN else ring
 
 
 def fit_sections(
