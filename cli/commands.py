@@ -43,6 +43,8 @@ COMMANDS = {
         "Do everything in one go: stage files, exports, measures, surfaces, a roll, pictures and a report in one "
         "folder.",
     ),
+    "split": Entry("split", "split", "Cut a cloud that is too large into tiles that overlap, or into its objects."),
+    "join": Entry("join", "join", "Make one skeleton of those of tiles or objects."),
     "shape": Entry(
         "shape", "shape", "Make a cloud whose curve skeleton is known: tubes, plants, blocks, torsos, wires.",
         bare=True,

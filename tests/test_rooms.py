@@ -30,9 +30,10 @@ ALLOWED = {
     "metrics": STAGES,
     "gallery": STAGES,
     "surfaces": GEOMETRY,
+    "tiles": STAGES,
     "slicing": f"{STAGES} surfaces",
     "rolling": f"{STAGES} surfaces slicing",
-    "io": f"{STAGES} version preprocess metrics surfaces slicing rolling",
+    "io": f"{STAGES} version preprocess metrics surfaces slicing rolling tiles",
     "pictures": f"{STAGES} metrics surfaces slicing rolling",
     "messages": f"{STAGES} surfaces slicing rolling metrics",  # the wording of what the stages report
     "pipeline": f"{STAGES} preprocess metrics surfaces slicing rolling io messages",

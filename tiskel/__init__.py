@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from tiskel.io.clouds import load_cloud as load_cloud
     from tiskel.io.curves import Curve as Curve
     from tiskel.io.curves import load_curve as load_curve
+    from tiskel.io.join import join_skeletons as join_skeletons
+    from tiskel.io.split import split_cloud as split_cloud
     from tiskel.io.stages.contraction import read_contraction as read_contraction
     from tiskel.io.stages.contraction import write_contraction as write_contraction
     from tiskel.io.stages.skeleton import read_skeleton as read_skeleton
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
     from tiskel.params import ConditioningParams as ConditioningParams
     from tiskel.params import ContractionParams as ContractionParams
     from tiskel.params import GlsParams as GlsParams
+    from tiskel.params import JoinParams as JoinParams
     from tiskel.params import LbcParams as LbcParams
     from tiskel.params import MetricParams as MetricParams
     from tiskel.params import PipelineParams as PipelineParams
@@ -50,6 +53,7 @@ if TYPE_CHECKING:
     from tiskel.params import RollParams as RollParams
     from tiskel.params import ShapeParams as ShapeParams
     from tiskel.params import SkeletonParams as SkeletonParams
+    from tiskel.params import SplitParams as SplitParams
     from tiskel.params import StabilityParams as StabilityParams
     from tiskel.params import SurfaceParams as SurfaceParams
     from tiskel.pipeline import PipelineResult as PipelineResult
@@ -81,6 +85,7 @@ _HOME = {
     "GlsParams": "params",
     "Inputs": "rolling.inputs",
     "LbcParams": "params",
+    "JoinParams": "params",
     "MetricParams": "params",
     "PipelineParams": "params",
     "PipelineResult": "pipeline",
@@ -94,6 +99,7 @@ _HOME = {
     "ShapeParams": "params",
     "Skeleton": "skeleton",
     "SkeletonParams": "params",
+    "SplitParams": "params",
     "Stability": "metrics.stability",
     "StabilityParams": "params",
     "Status": "methods.trace",
@@ -108,6 +114,7 @@ _HOME = {
     "evaluate": "metrics.evaluate",
     "extract_skeleton": "skeleton",
     "fit_surface": "slicing.fit",
+    "join_skeletons": "io.join",
     "load_cloud": "io.clouds",
     "load_curve": "io.curves",
     "make_shape": "gallery.make",
@@ -119,6 +126,7 @@ _HOME = {
     "roll_body": "rolling.bodies",
     "run_pipeline": "pipeline",
     "shape_graph": "gallery.make",
+    "split_cloud": "io.split",
     "write_contraction": "io.stages.contraction",
     "write_skeleton": "io.stages.skeleton",
     "write_surfaces": "io.stages.surface",

@@ -35,6 +35,7 @@ from tiskel.params.shape import ShapeParams
 from tiskel.params.skeleton import SkeletonParams
 from tiskel.params.stability import Orientation, StabilityParams
 from tiskel.params.surface import FrameRule, OrderRule, SurfaceParams
+from tiskel.params.tiles import JoinParams, Parts, SplitParams
 
 __all__ = [
     "MIN_POINTS",
@@ -45,6 +46,7 @@ __all__ = [
     "ContractionParams",
     "FrameRule",
     "GlsParams",
+    "JoinParams",
     "LaplacianParams",
     "LbcParams",
     "MaxPoints",
@@ -56,6 +58,7 @@ __all__ = [
     "Normals",
     "OrderRule",
     "Orientation",
+    "Parts",
     "PipelineParams",
     "Place",
     "RegimeChoice",
@@ -65,6 +68,7 @@ __all__ = [
     "Side",
     "SkeletonParams",
     "Solver",
+    "SplitParams",
     "StabilityParams",
     "SurfaceParams",
     "Topology",

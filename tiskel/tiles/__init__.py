@@ -1,0 +1,1 @@
+"""Clouds too large for one run: cells that are counted, boxes that overlap, objects, and curves joined again."""
