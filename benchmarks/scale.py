@@ -3,8 +3,9 @@
     python benchmarks/scale.py --points 1000000           # print
     python benchmarks/scale.py --points 10000000 --write  # into benchmarks/scale, beside the rows that are there
 
-Scenes are a network of pipes along a crooked lattice (network) and trees side by side (forest), as large as keeps
-points about an eighth of a pipe's radius apart. Every step has a process of its own: peak MB is the most that it held,
+Scenes are a network of pipes along a crooked lattice (network) and nine trees side by side (forest), the same for all
+numbers of points: pipes have a radius of about ten spacings at a million. Every step has a process of its own: peak
+MB is the most that it held,
 of interpreter, libraries and kernels 150 to 180. Skeletons of tiles are made one after the other in one process of one
 thread; seconds are of the wall. The whole is tried up to --whole points (1 000 000).
 """
@@ -45,19 +46,15 @@ from tiskel.skeleton import Skeleton
 FOLDER = Path(__file__).parent / "scale"
 CHUNK = 500_000  # points that are made at once
 ROW = np.dtype([("x", "<f8"), ("y", "<f8"), ("z", "<f8")])
-DENSE = 1_000_000  # points of a network of five joints to a side, or of nine trees
 
 
-def scene(name: str, count: int) -> ConeGraph:
-    """Return a scene for so many points."""
-    if name == "forest":
-        return forest(round(3 * (count / DENSE) ** 0.5), 25, apart=16.0)
-    return network(round(5 * (count / DENSE) ** (1 / 3)), 0.09)
+def scene(name: str) -> ConeGraph:
+    return forest(3, 25, apart=16.0) if name == "forest" else network(4, 0.09)
 
 
 def make(folder: Path, name: str, count: int, points: int) -> dict[str, object]:
     """Write the cloud chunk by chunk."""
-    shape = scene(name, count)
+    shape = scene(name)
     with (folder / "cloud.ply").open("wb") as file:
         lines = ["ply", "format binary_little_endian 1.0", f"element vertex {count}"]
         lines += [f"property double {axis}" for axis in "xyz"]

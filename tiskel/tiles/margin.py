@@ -26,6 +26,7 @@ AHEAD = 0.8  # cosine of a look and the way to the mean that it ends at
 WIDTH = 0.75  # of a cell: so near to a mean, a look ends there
 FIRST, FARTHEST = 2.5, 16.0  # cells from where a look begins to where it ends
 STEP = 0.5  # of a cell, that a look goes on at least
+ENOUGH = 0.05  # share of the cells that see something; fewer look between limbs of less than three cells' radius
 SHARE = 0.98  # of the cells have limbs that are no thicker; what looks between thin limbs is less than the rest
 RADII = 4.0  # of the thickest limb that the margin is wide: half is for a curve cut open, half for joining
 SPACINGS = 12.0  # that the margin is wide at least: four radii of a limb too thin to be measured
@@ -56,7 +57,8 @@ def radius_of(grid: CellGrid, spacing: float) -> float:
     while grid.side < spacing or len(grid.counts) > MOST:
         grid = grid.coarser()
     half = half_thicknesses(grid)
-    return float(np.quantile(np.where(np.isfinite(half), half, 0.0), SHARE))
+    seen = np.isfinite(half)
+    return float(np.quantile(np.where(seen, half, 0.0), SHARE)) if seen.mean() >= ENOUGH else 0.0
 
 
 def half_thicknesses(grid: CellGrid) -> Numbers:

@@ -14,7 +14,7 @@ from tiskel.tiles.web import Web, together
 
 NEAR = 1.5  # reaches to the other curve, at most, for a crossing without a partner to be joined to it
 AROUND = 6.0  # reaches of way: what is joined so closely already needs no second way
-STUB = 3.0  # reaches that a cut end is long at most where it goes because its limb goes on another way
+STUB = 3.0  # reaches of a cut end that goes because its limb goes on another way; about a hole it is 2 pi at least
 BLEND = 4.0  # times what two curves are apart: so long each bends towards the other
 
 
@@ -55,7 +55,10 @@ def stitched(low: Web, high: Web, axis: int, place: float, half: float, step: fl
     web = replace(both, nodes=_blended(both, keep, pairs), torn=torn).kept(keep)
     joins = np.stack([number[pairs[:, 0]], number[pairs[:, 3]]], axis=1)
     web = _joined(web, joins, both.torn[pairs[:, 0]] | both.torn[pairs[:, 3]])
-    return _attached(web, number[alone[:, 0]], slab.is_high[keep], np.abs(slab.x[keep]) <= 2 * half)
+    web = _without_short_loops(web, joins)
+    web = _attached(web, number[alone[:, 0]], slab.is_high[keep], np.abs(slab.x[keep]) <= 2 * half)
+    gone = web.node == GONE
+    return web.kept(~gone) if gone.any() else web
 
 
 def _all(tables: list[Pairs], width: int) -> Pairs:
@@ -140,11 +143,21 @@ def _attached(web: Web, ends: Indices, is_high: Mask, near: Mask) -> Web:
             web = _without_stub(web, end, STUB * reach)
         else:
             web = _joined(web, np.array([[end, target]]))
-    gone = web.node == GONE
-    return web.kept(~gone) if gone.any() else web
+    return web
 
 
 GONE = -2  # number of a node that is taken off when all ends are done
+
+
+def _without_short_loops(web: Web, joins: Pairs) -> Web:
+    """Return the web without those joins beside which a short way leads on, too: a joint that both sides have."""
+    for one, other in joins.tolist():
+        there = (web.edges == [one, other]).all(axis=1)
+        without = replace(web, edges=web.edges[~there], bridged=web.bridged[~there])
+        reach = float(max(web.reach[one], web.reach[other]))
+        if _way(without, one, other, STUB * reach) <= STUB * reach:
+            web = _without_stub(_without_stub(without, one, STUB * reach), other, STUB * reach)
+    return web
 
 
 def _way(web: Web, start: int, goal: int, limit: float) -> float:

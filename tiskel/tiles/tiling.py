@@ -194,10 +194,8 @@ class _Planes:
         allowed[0] = False
         if not allowed.any():
             return []
-        if self.params.size is not None:  # halves of the box, not of the points
-            share = (places - first) / (last - first)
-        else:
-            share = summed[:-1] / total
+        halves = (places - first) / (last - first)
+        share = summed[:-1] / total if self.params.size is None else halves
         even = allowed & (share >= BALANCE[0]) & (share <= BALANCE[1])
         near = [summed[np.searchsorted(slabs * self.grid.side, places + way * self.overlap)] for way in (-1, 1)]
         price = (near[1] - near[0]) / total + UNEVEN * np.abs(share - 0.5)
