@@ -3,7 +3,8 @@
     python benchmarks/scale.py --points 1000000           # print
     python benchmarks/scale.py --points 10000000 --write  # into benchmarks/scale, beside the rows that are there
 
-Scenes are a network of pipes along a crooked lattice (network) and nine trees side by side (forest), the same for all
+Scenes are pipes along a crooked lattice of 4 x 4 x 4 (network) and 16 x 2 x 2 joints (gallery), and nine trees side by
+side (forest), the same for all
 numbers of points: pipes have a radius of about ten spacings at a million. Every step has a process of its own: peak
 MB is the most that it held,
 of interpreter, libraries and kernels 150 to 180. Skeletons of tiles are made one after the other in one process of one
@@ -44,12 +45,15 @@ from tiskel.io.tile_index import CLOUDS, SKELETONS, read_index
 from tiskel.skeleton import Skeleton
 
 FOLDER = Path(__file__).parent / "scale"
+SCENES = ("network", "gallery", "forest")
 CHUNK = 500_000  # points that are made at once
 ROW = np.dtype([("x", "<f8"), ("y", "<f8"), ("z", "<f8")])
 
 
 def scene(name: str) -> ConeGraph:
-    return forest(3, 25, apart=16.0) if name == "forest" else network(4, 0.09)
+    if name == "forest":
+        return forest(3, 25, apart=16.0)
+    return network((4, 4, 4), 0.09) if name == "network" else network((16, 2, 2), 0.09)
 
 
 def make(folder: Path, name: str, count: int, points: int) -> dict[str, object]:
@@ -154,7 +158,7 @@ def rows_of(name: str, count: int, points: int, most: int, scratch: str | None) 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--points", type=int, nargs="+", default=[1_000_000])
-    parser.add_argument("--scenes", nargs="+", choices=("network", "forest"), default=["network", "forest"])
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--tile", type=int, default=SplitParams().points)
     parser.add_argument("--whole", type=int, default=1_000_000)
     parser.add_argument("--scratch", help="a folder for temporary files, 80 bytes a point")

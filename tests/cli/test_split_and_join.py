@@ -12,7 +12,7 @@ from tiskel import read_skeleton
 @pytest.mark.slow
 def test_a_cloud_is_split_done_and_joined(tiskel: Runner, tmp_path: Path) -> None:
     assert tiskel("shape", "knot", "-n", 3000, "-o", "k.ply").returncode == 0
-    done = tiskel("split", "k.ply", "-o", "d", "--points", 1600)
+    done = tiskel("split", "k.ply", "-o", "d", "--points", 1600, "--overlap", 0.45)
     assert done.returncode == 0
     assert done.stdout == b""
     assert b"3000 points, " in done.stderr

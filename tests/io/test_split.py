@@ -176,7 +176,7 @@ def test_objects_are_files_and_crumbs_are_kept_apart(tmp_path: Path) -> None:
 def parts(points: Points, tmp_path: Path) -> Path:
     """A knot in tiles, each with its skeleton."""
     (tmp_path / "c.npy").write_bytes(dump_cloud(points, "c.npy"))
-    split_cloud(tmp_path / "c.npy", tmp_path / "d", SplitParams(points=1600))
+    split_cloud(tmp_path / "c.npy", tmp_path / "d", SplitParams(points=1600, overlap=450.0))
     (tmp_path / "d" / "skeletons").mkdir()
     for name, at, _, _ in part_clouds(tmp_path / "d"):
         source = load_cloud(tmp_path / "d" / "clouds" / f"{name}.ply").source

@@ -16,11 +16,11 @@ def long_tube(turns: float = 1.5, radius: float = 0.12) -> Body:
     return swept([Sweep(spline(line), steady(radius))])
 
 
-def network(side: int, radius: float, seed: int = 0) -> ConeGraph:
-    """Return pipes along a crooked lattice of so many joints to a side, one apart, three pipes of ten left out."""
+def network(sides: tuple[int, int, int], radius: float, seed: int = 0) -> ConeGraph:
+    """Return pipes along a crooked lattice of so many joints to its sides, one apart, three pipes of ten left out."""
     generator = np.random.default_rng(seed)
-    number = np.arange(side**3).reshape((side,) * 3)
-    nodes = np.stack(np.meshgrid(*[np.arange(side)] * 3, indexing="ij"), -1).reshape(-1, 3)
+    number = np.arange(np.prod(sides)).reshape(sides)
+    nodes = np.stack(np.meshgrid(*map(np.arange, sides), indexing="ij"), -1).reshape(-1, 3)
     places = nodes + generator.uniform(-0.2, 0.2, nodes.shape)
     steps = [np.moveaxis(number, axis, 0) for axis in range(3)]
     edges = np.concatenate([np.stack([step[:-1].ravel(), step[1:].ravel()], axis=1) for step in steps])

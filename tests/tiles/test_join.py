@@ -116,7 +116,7 @@ def whole_and_joined(points: Points, tiles: int) -> tuple[CurveGraph, Web, Tilin
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("shape", "count", "tiles"),
-    [(long_tube(), 20_000, 8), (network(3, 0.12), 30_000, 6), (forest(2, 8), 30_000, 6)],
+    [(long_tube(), 12_000, 8), (network((3, 3, 3), 0.12), 30_000, 6), (forest(2, 6), 20_000, 6)],
     ids=["tube", "network", "forest"],
 )
 def test_skeletons_of_tiles_make_the_skeleton_of_the_whole(shape: Shape, count: int, tiles: int) -> None:

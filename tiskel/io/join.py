@@ -24,6 +24,7 @@ from tiskel.tiles.web import Web, web_of
 
 NAMES = ("{name}/skeleton.ply", "{name}.ply/skeleton.ply", "{name}.skeleton.ply", "{name}.ply")  #: of a part's skeleton
 OF_CUTS = ("open-ends", "short", "small-parts")  #: what is said of a tile because limbs were cut open at its border
+OF_TILES = ("loops",)  #: what is a warning of a whole cloud, of a tile a note: limbs cut open hide handles
 NAMED = 5  # parts that a message names
 
 
@@ -201,10 +202,11 @@ def _said(skeletons: dict[int, Skeleton], index: TileIndex, missing: Sequence[st
             if _counts(doubt, index, number):
                 by_code.setdefault((doubt.code, doubt.severity), []).append(doubt)
     for (code, severity), doubts in by_code.items():
+        milder: Severity = "note" if index.tiling is not None and code in OF_TILES else severity
         worst = max(doubts, key=lambda doubt: doubt.share)
         places = tuple(place for doubt in doubts for place in doubt.places[:1])[:NAMED]
         text = f"in {len(doubts)} of {len(skeletons)} parts, in one of them: {worst.text}"
-        found.append(CurveWarning(code, text, severity, worst.share, places))
+        found.append(CurveWarning(code, text, milder, worst.share, places))
     return found
 
 

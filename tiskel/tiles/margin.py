@@ -30,7 +30,7 @@ ENOUGH = 0.05  # share of the cells that see something; fewer look between limbs
 SHARE = 0.98  # of the cells have limbs that are no thicker; what looks between thin limbs is less than the rest
 RADII = 4.0  # of the thickest limb that the margin is wide: half is for a curve cut open, half for joining
 SPACINGS = 12.0  # that the margin is wide at least: four radii of a limb too thin to be measured
-WIDEST = 0.25  # of the longest side of the cloud, at most
+WIDEST = 0.2  # of the longest side of the cloud, at most: two tiles must have room for two each
 
 
 def overlap_of(grid: CellGrid, spacing: float) -> float:
