@@ -3,11 +3,9 @@
     python benchmarks/scale.py --points 1000000           # print
     python benchmarks/scale.py --points 10000000 --write  # into benchmarks/scale, beside the rows that are there
 
-Scenes are pipes along a crooked lattice of 4 x 4 x 4 (network) and 16 x 2 x 2 joints (gallery), and nine trees side by
-side (forest), the same for all
-numbers of points: pipes have a radius of about ten spacings at a million. Every step has a process of its own: peak
-MB is the most that it held,
-of interpreter, libraries and kernels 150 to 180. Skeletons of tiles are made one after the other in one process of one
+Scenes are pipes along a crooked lattice of 4 x 4 x 4 (network) and 16 x 2 x 2 joints (mine), and nine trees side by
+side (forest), the same for all numbers of points: pipes have a radius of ten spacings, about, at a million. Every step
+has a process of its own: peak MB is the most that it held, of interpreter, libraries and kernels 150 to 180. Skeletons of tiles are made one after the other in one process of one
 thread; seconds are of the wall. The whole is tried up to --whole points (1 000 000).
 """
 
@@ -45,7 +43,7 @@ from tiskel.io.tile_index import CLOUDS, SKELETONS, read_index
 from tiskel.skeleton import Skeleton
 
 FOLDER = Path(__file__).parent / "scale"
-SCENES = ("network", "gallery", "forest")
+SCENES = ("network", "mine", "forest")
 CHUNK = 500_000  # points that are made at once
 ROW = np.dtype([("x", "<f8"), ("y", "<f8"), ("z", "<f8")])
 

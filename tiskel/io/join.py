@@ -24,7 +24,7 @@ from tiskel.tiles.web import Web, web_of
 
 NAMES = ("{name}/skeleton.ply", "{name}.ply/skeleton.ply", "{name}.skeleton.ply", "{name}.ply")  #: of a part's skeleton
 OF_CUTS = ("open-ends", "short", "small-parts")  #: what is said of a tile because limbs were cut open at its border
-OF_TILES = ("loops",)  #: what is a warning of a whole cloud, of a tile a note: limbs cut open hide handles
+OF_TILES = ("loops", "in-air")  #: warnings of a whole cloud, of a tile notes: of limbs cut open and what bridges them
 NAMED = 5  # parts that a message names
 
 
