@@ -5,8 +5,8 @@
 
 Scenes are pipes along a crooked lattice of 4 x 4 x 4 (network) and 16 x 2 x 2 joints (mine), and nine trees side by
 side (forest), the same for all numbers of points: pipes have a radius of ten spacings, about, at a million. Every step
-has a process of its own: peak MB is the most that it held, of interpreter, libraries and kernels 150 to 180. Skeletons of tiles are made one after the other in one process of one
-thread; seconds are of the wall. The whole is tried up to --whole points (1 000 000).
+has a process of its own: peak MB is the most that it held, of interpreter, libraries and kernels 150 to 180. Skeletons
+of tiles are made one after the other; seconds are of the wall. The whole is tried up to --whole points (1 000 000).
 """
 
 import argparse
