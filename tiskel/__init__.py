@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from tiskel.metrics.result import Quality as Quality
     from tiskel.metrics.stability import Stability as Stability
     from tiskel.metrics.stability import assess_stability as assess_stability
+    from tiskel.params import BodyParams as BodyParams
     from tiskel.params import ConditioningParams as ConditioningParams
     from tiskel.params import ContractionParams as ContractionParams
     from tiskel.params import GlsParams as GlsParams
@@ -68,11 +69,16 @@ if TYPE_CHECKING:
     from tiskel.rolling.trajectory import Trajectory as Trajectory
     from tiskel.skeleton import Skeleton as Skeleton
     from tiskel.skeleton import extract_skeleton as extract_skeleton
+    from tiskel.slicing.body import fit_body as fit_body
     from tiskel.slicing.fit import fit_surface as fit_surface
     from tiskel.slicing.fitted import FittedSurface as FittedSurface
     from tiskel.slicing.fitted import Surfaces as Surfaces
+    from tiskel.surfaces.patches import BodySurface as BodySurface
+    from tiskel.surfaces.patches import Trust as Trust
 
 _HOME = {
+    "BodyParams": "params",
+    "BodySurface": "surfaces.patches",
     "BodyTrajectory": "rolling.bodies",
     "Cloud": "io.clouds",
     "ConditioningParams": "params",
@@ -108,11 +114,13 @@ _HOME = {
     "Surfaces": "slicing.fitted",
     "TiskelError": "errors",
     "Trajectory": "rolling.trajectory",
+    "Trust": "surfaces.patches",
     "assess_stability": "metrics.stability",
     "condition": "preprocess.conditioning",
     "contract": "contraction",
     "evaluate": "metrics.evaluate",
     "extract_skeleton": "skeleton",
+    "fit_body": "slicing.body",
     "fit_surface": "slicing.fit",
     "join_skeletons": "io.join",
     "load_cloud": "io.clouds",

@@ -6,6 +6,7 @@ marked [T] are those of the published MATLAB toolboxes, which produced the
 published tables.
 """
 
+from tiskel.params.body import BodyParams
 from tiskel.params.conditioning import ConditioningParams, NoiseKind
 from tiskel.params.methods import (
     MIN_POINTS,
@@ -42,6 +43,7 @@ __all__ = [
     "SIDE",
     "Bars",
     "BetaRule",
+    "BodyParams",
     "ConditioningParams",
     "ContractionParams",
     "FrameRule",

@@ -1,0 +1,108 @@
+"""The surface of the whole body, from a skeleton, its cloud and the tubes that were fitted to it."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from tiskel.arrays import Indices, Numbers, Points, as_points
+from tiskel.errors import TiskelError
+from tiskel.geometry.graph import CurveGraph
+from tiskel.params import BodyParams
+from tiskel.skeleton import Skeleton
+from tiskel.slicing.body_points import BodyPoints, body_points
+from tiskel.slicing.fitted import Surfaces
+from tiskel.surfaces.implicit import projected
+from tiskel.surfaces.patches import BodySurface, Patches, Trust
+
+FOURTH = 4  # neighbour; within one and a half of its distance there is always another patch
+LEAST_REACH = 1.5
+
+
+def fit_body(
+    skeleton: CurveGraph, surfaces: Surfaces | None = None, params: BodyParams | None = None,
+    cloud: Points | None = None,
+) -> BodySurface:  # fmt: skip
+    """Fit one closed surface to the whole body: joints and ends are places like others.
+
+    Parameters
+    ----------
+    skeleton : Skeleton or CurveGraph
+        The curve, in any unit; it tells which way is out, and how thick the body is.
+    surfaces : Surfaces, optional
+        Tubes fitted along its branches.
+    params : BodyParams, optional
+        The settings.
+    cloud : (n, 3) float64, optional
+        The cloud around a curve from elsewhere, in its unit; a skeleton brings its own.
+
+    Returns
+    -------
+    BodySurface
+
+    Raises
+    ------
+    TiskelError
+        Where a curve comes without its cloud.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, fit_body, make_shape, shape_graph
+    >>> cloud, true = make_shape(shape_graph("capsule"), ShapeParams(count=1000))
+    >>> body = fit_body(true)
+    >>> body.summary["coverage"], body.summary["mean"] < 0.001
+    (1.0, True)
+    """
+    params = params or BodyParams()
+    if cloud is None and not isinstance(skeleton, Skeleton):
+        raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
+    every = as_points(skeleton.cloud if cloud is None else cloud)  # type: ignore[attr-defined]
+    body = body_points(skeleton, every, params)
+    surface = BodySurface(_patches(body, params).sorted(), every, np.zeros(0), float(np.median(body.radii)))
+    distances = np.full(len(every), np.nan)
+    distances[body.rows] = np.linalg.norm(projected(surface, body.points) - body.points, axis=1)
+    return replace(surface, distances=distances)
+
+
+def _patches(body: BodyPoints, params: BodyParams) -> Patches:
+    """Return the quadrics about some of the points, with supports that end before opposite walls."""
+    supports = np.minimum(body.widths, params.facing * body.opposite)
+    supports = np.maximum(supports, LEAST_REACH * body.far[:, min(FOURTH, body.far.shape[1] - 1)])
+    rows = spread(body.points, params.spread * supports)
+    found = body.chosen(rows)
+    foot = -found.gradient * (found.value / (found.gradient**2).sum(axis=1))[:, None]
+    value, gradient, hessian, _ = found.moved(foot)
+    return Patches(
+        body.points[rows] + foot, supports[rows], value, gradient, hessian, body.radii[rows],
+        np.full(len(rows), Trust.MEASURED, np.uint8), np.zeros(len(rows), bool),
+    )  # fmt: skip
+
+
+def spread(points: Points, apart: Numbers) -> Indices:
+    """Return rows of points so that every point is nearer to one of them than that one's distance.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        In any unit.
+    apart : (n,) float64
+        How far about each point no other is needed, in the same unit; where this is least comes first.
+
+    Returns
+    -------
+    (m,) int32
+        Ascending.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> spread(np.outer(np.arange(5.0), [1, 0, 0]), np.full(5, 1.5)).tolist()
+    [0, 2, 4]
+    """
+    lists = cKDTree(points).query_ball_point(points, apart)
+    free, taken = np.ones(len(points), bool), []
+    for row in np.argsort(apart, kind="stable").tolist():
+        if free[row]:
+            taken.append(row)
+            free[lists[row]] = False
+    return np.sort(np.array(taken, np.int32))
