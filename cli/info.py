@@ -66,7 +66,9 @@ def _surface_facts(data: bytes, source: Any) -> dict[str, Any]:
         s.name: {"length": s.length, "radius": s.radius, "order": s.order, "error": s.error, "slices": s.cases()}
         for s in found
     }
-    extra = {"rejected": found.rejected} if found.rejected else {}
+    extra: dict[str, Any] = {"rejected": found.rejected} if found.rejected else {}
+    if found.body is not None:
+        extra["body"] = {"patches": len(found.body.patches), "radius": found.body.radius, **found.body.summary}
     return {"file": source.name, "stage": "surface", "surfaces": surfaces, **extra, "cloud": _extent(found.cloud)}
 
 

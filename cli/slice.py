@@ -38,6 +38,9 @@ MeshFile = Annotated[
         rich_help_panel="Output",
     ),
 ]
+NoBody = Annotated[
+    bool, typer.Option("--no-body", help="Leave the surface of the whole body out.", rich_help_panel="Method")
+]
 Caps = Annotated[bool, typer.Option("--caps", help="Close the ends of the triangles.", rich_help_panel="Output")]
 TableFile = Annotated[
     Path | None,
@@ -61,19 +64,20 @@ def slice_command(
     m: so.FrameField = so.M,
     order_rule: so.OrderRuleName = so.SURFACE.order_rule,
     no_recentre: so.NoRecentre = not so.SURFACE.recentre,
+    no_body: NoBody = False,
     mesh: MeshFile = None,
     caps: Caps = False,
     table: TableFile = None,
     plot: o.Plot = None,
 ) -> None:
-    """Fit a smooth surface around every branch of a skeleton, slice by slice.
+    """Fit a smooth surface around every branch of a skeleton, slice by slice, and one surface to the whole body.
 
     Reads skeleton.ply, writes surface.json, which holds all that roll needs:
     `tiskel skeleton c.ply | tiskel slice - --mesh tube.ply | tiskel roll - > path.csv`
     """
     params = so.surface_params(branch, interval, m, order_rule, no_recentre)
     with shown(reading(source, curve)) as progress:
-        surfaces, origin = _fitted(source, curve, params, progress)
+        surfaces, origin = _fitted(source, curve, params, not no_body, progress)
     console.tell(messages.of_surfaces(surfaces))
     from tiskel.io.mesh_file import dump_mesh
     from tiskel.io.stages.surface import dump_surfaces
@@ -93,24 +97,25 @@ def slice_command(
 
 
 def _fitted(
-    source: Path, curve: Path | None, params: "SurfaceParams", progress: "Report | None"
+    source: Path, curve: Path | None, params: "SurfaceParams", whole: bool, progress: "Report | None"
 ) -> "tuple[Surfaces, dict[str, str]]":
     """Return the surfaces of a skeleton, or of a curve in a cloud, and what they were made from."""
-    from tiskel import fit_surface, load_cloud
+    from tiskel import fit_surface, fit_whole, load_cloud
     from tiskel.io.curves import load_curve
     from tiskel.io.ply import source_of
     from tiskel.io.stages.skeleton import parse_skeleton
     from tiskel.io.streams import read_bytes
 
+    fit = fit_whole if whole else fit_surface
     if curve is None:
         data = read_bytes(source)
-        surfaces = fit_surface(parse_skeleton(data, str(source)), params, progress=progress)
+        surfaces = fit(parse_skeleton(data, str(source)), params, progress=progress)
         return surfaces, source_of(data, "skeleton", str(source))
     if str(source) == "-" == str(curve):
         raise TiskelError("the cloud and --curve cannot both come from standard input; name a file for one of them")
     cloud = load_cloud(source)
     console.warn(cloud.warnings)
-    return fit_surface(load_curve(curve), params, cloud.points, progress=progress), cloud.source
+    return fit(load_curve(curve), params, cloud.points, progress=progress), cloud.source
 
 
 def slices_csv(surfaces: "Surfaces") -> bytes:

@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from tiskel.skeleton import Skeleton as Skeleton
     from tiskel.skeleton import extract_skeleton as extract_skeleton
     from tiskel.slicing.body import fit_body as fit_body
+    from tiskel.slicing.body import fit_whole as fit_whole
     from tiskel.slicing.fit import fit_surface as fit_surface
     from tiskel.slicing.fitted import FittedSurface as FittedSurface
     from tiskel.slicing.fitted import Surfaces as Surfaces
@@ -122,6 +123,7 @@ _HOME = {
     "extract_skeleton": "skeleton",
     "fit_body": "slicing.body",
     "fit_surface": "slicing.fit",
+    "fit_whole": "slicing.body",
     "join_skeletons": "io.join",
     "load_cloud": "io.clouds",
     "load_curve": "io.curves",

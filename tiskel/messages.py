@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from tiskel.rolling.trajectory import Trajectory
     from tiskel.skeleton import Skeleton
     from tiskel.slicing.fitted import FittedSurface, Surfaces
+    from tiskel.surfaces.patches import BodySurface
 
 
 @dataclass(frozen=True)
@@ -79,10 +80,12 @@ def of_stability(stability: "Stability") -> Messages:
 
 
 def of_surfaces(surfaces: "Surfaces") -> Messages:
-    """Return a line for every surface, why other branches have none, how much they cover, then the warnings."""
+    """Return a line for every surface, why other branches have none, how much they cover, that of the body, then warnings."""
     rejected = (f"branch {name} has no surface: {reason}" for name, reason in surfaces.rejected.items())
-    warnings = (warning for surface in surfaces for warning in surface.warnings)
-    return (*said(map(_surface, surfaces)), *said(rejected), *of_coverage(surfaces), *warned(warnings))
+    body = () if surfaces.body is None else (surfaces.body,)
+    warnings = (warning for surface in (*surfaces, *body) for warning in surface.warnings)
+    told = (*said(map(_surface, surfaces)), *said(rejected), *of_coverage(surfaces), *said(map(_body, body)))
+    return (*told, *warned(warnings))
 
 
 def of_coverage(surfaces: "Surfaces") -> Messages:
@@ -96,6 +99,15 @@ def of_coverage(surfaces: "Surfaces") -> Messages:
         f"has one; all points are off by local radii of {off}"
     )
     return said([line])
+
+
+def _body(b: "BodySurface") -> str:
+    off = b.summary
+    return (
+        f"whole body: {len(b.patches)} patches, {b.of_tubes:.0%} of them of tubes; {off['coverage']:.1%} of the points "
+        f"within 5 % of the local radius; distance in local radii: mean {off['mean']:.2%}, 95 % {off['p95']:.2%}; "
+        f"{b.share(1):.1%} of it little seen, {b.share(0):.1%} bridged"
+    )
 
 
 def _surface(s: "FittedSurface") -> str:

@@ -21,7 +21,7 @@ from tiskel.progress import Report
 from tiskel.rolling.roll import roll
 from tiskel.rolling.trajectory import Trajectory
 from tiskel.skeleton import Skeleton, extract_skeleton
-from tiskel.slicing.fit import fit_surface
+from tiskel.slicing.body import fit_whole
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.timing import Stopwatch
 
@@ -65,7 +65,7 @@ class PipelineResult:
     quality : Quality
     stability : Stability
     surfaces : Surfaces or None
-        None where no branch could have one; then there are no trajectories.
+        With that of the whole body; None where it could not be fitted, and then there are no trajectories.
     trajectories : tuple of Trajectory
         The runs over the longest surface; empty where the sphere cannot roll there.
     reason : str
@@ -99,8 +99,8 @@ class PipelineResult:
 
     @property
     def surface(self) -> FittedSurface | None:
-        """The longest surface, which the sphere rolls on."""
-        return None if self.surfaces is None else self.surfaces.named(None)
+        """The longest surface of a branch, which the sphere rolls on; None where no branch has one."""
+        return self.surfaces.named(None) if self.surfaces else None
 
 
 class _Record:
@@ -218,13 +218,16 @@ def _surfaces_and_runs(
 ) -> tuple[Surfaces | None, tuple[Trajectory, ...], str]:
     """Fit surfaces and roll over the longest; where that is impossible, return the reason and what there is."""
     surfaces, reason = record.attempt(
-        "surface", lambda: fit_surface(skeleton, params.surface, progress=progress), messages.of_surfaces
+        "surface",
+        lambda: fit_whole(skeleton, params.surface, body=params.body, progress=progress),
+        messages.of_surfaces,
     )
     if surfaces is None:
         return None, (), reason
-    longest = surfaces.named(None)
     runs, reason = record.attempt(
-        "roll", lambda: tuple(roll(longest, r, progress=progress) for r in params.roll), messages.of_runs
+        "roll",
+        lambda: tuple(roll(surfaces.named(None), r, progress=progress) for r in params.roll),
+        messages.of_runs,
     )
     return surfaces, runs or (), reason
 

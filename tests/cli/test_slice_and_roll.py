@@ -188,7 +188,7 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
     assert still.returncode == 0
     assert "stays where it is" in json.loads(still.stdout)["runs"][0]["warnings"][0]
     refused: list[tuple[tuple[object, ...], str]] = [
-        (("s.ply", "--interval", 0.9), "too short for 4 slices"),
+        (("s.ply", "--interval", 0.9, "--no-body"), "too short for 4 slices"),
         (("s.ply", "--branch", 7), "there is no branch 7"),
         (("s.ply", "--m", "up"), "--m needs 3 numbers"),
         (("f.json",), "is no"),

@@ -88,9 +88,12 @@ def test_what_is_impossible_has_a_reason(cloud: np.ndarray) -> None:
     assert (rolled.trajectories, "a sphere of radius 9" in rolled.reason) == ((), True)
     assert rolled.messages[-1].text == f"no rolling: {rolled.reason}"
     few = run_pipeline(cloud, replace(PARAMS, surface=SurfaceParams(interval=0.9)))
-    assert (few.surfaces, few.surface, few.trajectories) == (None, None, ())
-    assert "too short for 4 slices" in few.reason
-    assert few.messages[-1].text == f"no surface: {few.reason}"
+    assert few.surfaces is not None
+    assert few.surfaces.body is not None
+    assert (len(few.surfaces), few.surface, few.trajectories) == (0, None, ())
+    assert "too short for 4 slices" in next(iter(few.surfaces.rejected.values()))
+    assert "only the whole body has one" in few.reason
+    assert few.messages[-1].text == f"no rolling: {few.reason}"
     assert few.seconds["surface"] > 0
 
 

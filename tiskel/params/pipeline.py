@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from tiskel.params.body import BodyParams
 from tiskel.params.conditioning import ConditioningParams
 from tiskel.params.methods import ContractionParams, RobustParams
 from tiskel.params.metrics import MetricParams
@@ -36,6 +37,7 @@ class PipelineParams:
     metrics: MetricParams = field(default_factory=MetricParams)
     stability: StabilityParams = field(default_factory=StabilityParams)
     surface: SurfaceParams = field(default_factory=SurfaceParams)
+    body: BodyParams = field(default_factory=BodyParams)  #: the surface of the whole body
     roll: tuple[RollParams, ...] = field(default_factory=both_models)  #: one run each, over the longest surface
 
     def __post_init__(self) -> None:

@@ -8,10 +8,12 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Indices, Numbers, Points, as_points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
-from tiskel.params import BodyParams
+from tiskel.params import BodyParams, SurfaceParams
+from tiskel.progress import Report
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.body_points import BodyPoints, body_points
-from tiskel.slicing.fitted import Surfaces
+from tiskel.slicing.fit import fit_surface
+from tiskel.slicing.fitted import NoTubeError, Surfaces
 from tiskel.surfaces.implicit import projected
 from tiskel.surfaces.patches import BodySurface, Patches, Trust
 
@@ -62,6 +64,47 @@ def fit_body(
     distances = np.full(len(every), np.nan)
     distances[body.rows] = np.linalg.norm(projected(surface, body.points) - body.points, axis=1)
     return replace(surface, distances=distances)
+
+
+def fit_whole(
+    skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: Points | None = None, *,
+    body: BodyParams | None = None, progress: Report | None = None,
+) -> Surfaces:  # fmt: skip
+    """Fit tubes along the branches of a skeleton, as far as there are any, and one surface to the whole body.
+
+    Parameters
+    ----------
+    skeleton, params, cloud, progress
+        See :func:`tiskel.fit_surface`.
+    body : BodyParams, optional
+        The settings of the whole surface.
+
+    Returns
+    -------
+    Surfaces
+        With ``body``; without tubes where no branch can have one.
+
+    Raises
+    ------
+    TiskelError
+        Where a curve comes without its cloud.
+
+    Examples
+    --------
+    A ball has no branch to slice.
+
+    >>> from tiskel import ShapeParams, SurfaceParams, fit_whole, make_shape, shape_graph
+    >>> true = make_shape(shape_graph("egg"), ShapeParams(count=1000))[1]
+    >>> found = fit_whole(true, SurfaceParams(interval=0.2))
+    >>> len(found), found.body.summary["coverage"]
+    (0, 1.0)
+    """
+    try:
+        found = fit_surface(skeleton, params, cloud, progress=progress)
+    except NoTubeError as none:
+        every = skeleton.cloud if isinstance(skeleton, Skeleton) and cloud is None else as_points(cloud)  # type: ignore[arg-type]
+        found = Surfaces((), none.rejected, every)
+    return replace(found, body=fit_body(skeleton, found, body, found.cloud))
 
 
 def _patches(body: BodyPoints, params: BodyParams) -> Patches:

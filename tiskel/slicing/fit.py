@@ -19,7 +19,7 @@ from tiskel.slicing.axis import evened, fit_axis
 from tiskel.slicing.coverage import coverage_of
 from tiskel.slicing.cutter import INTERVALS, LEAST_SLICES, Cutter, Rejected, places_of, recentred, why_not
 from tiskel.slicing.doubts import doubts, misfit
-from tiskel.slicing.fitted import FittedSurface, Surfaces
+from tiskel.slicing.fitted import FittedSurface, NoTubeError, Surfaces
 from tiskel.slicing.mesh import mesh_report
 from tiskel.slicing.paths import LEAST_NODES, Path, dense, paths_of
 from tiskel.slicing.sections import Case, Section
@@ -87,8 +87,7 @@ def fit_surface(
         except Rejected as reason:
             rejected[path.name] = str(reason)
     if not surfaces:
-        reasons = "; ".join(f"branch {name}: {reason}" for name, reason in rejected.items())
-        raise TiskelError(f"no branch can be sliced: {reasons}")
+        raise NoTubeError(rejected)
     span.at(1)
     whole = sum(_length(path, skeleton.nodes) for path in paths_of(skeleton, "all"))
     found = Surfaces(tuple(surfaces), rejected, every)

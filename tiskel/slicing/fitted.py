@@ -10,6 +10,7 @@ from tiskel.arrays import Floats, Indices, Labels, Points
 from tiskel.errors import TiskelError
 from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.jets import Jet, Scalar
+from tiskel.surfaces.patches import BodySurface
 from tiskel.surfaces.tube import V_STOP, Tube
 
 BRIDGED, UNSEEN, MEASURED = 0, 1, 2  # trust in a place: slices without a fit, a side without points, points all about
@@ -123,6 +124,21 @@ class FittedSurface:
         return dict(Counter(section.case.value for section in self.sections) + Counter(self.trimmed))
 
 
+class NoTubeError(TiskelError):
+    """No branch of a skeleton can be sliced.
+
+    Attributes
+    ----------
+    rejected : dict of str to str
+        Why, by the name of the branch.
+    """
+
+    def __init__(self, rejected: dict[str, str]) -> None:
+        reasons = "; ".join(f"branch {name}: {reason}" for name, reason in rejected.items())
+        super().__init__(f"no branch can be sliced: {reasons}")
+        self.rejected = rejected
+
+
 @dataclass(frozen=True)
 class Coverage:
     """How much of a cloud and its curve has a surface, and how far all points are from the nearest one.
@@ -152,13 +168,15 @@ class Surfaces:
     Attributes
     ----------
     surfaces : tuple of FittedSurface
-        At least one.
+        Empty only where there is a body.
     rejected : dict of str to str
         Why each of the other branches has no surface, by its name.
     cloud : (n, 3) float64
         The cloud, in the input's unit.
     coverage : Coverage or None
         How much of cloud and curve they cover; None in files of older versions.
+    body : BodySurface or None
+        The surface of the whole body, joints and ends included.
 
     Examples
     --------
@@ -173,6 +191,7 @@ class Surfaces:
     rejected: dict[str, str]
     cloud: Points
     coverage: Coverage | None = None
+    body: BodySurface | None = None
 
     def __len__(self) -> int:
         return len(self.surfaces)
@@ -191,6 +210,8 @@ class Surfaces:
         TiskelError
             Where there is none of this name; the message says why, and which names there are.
         """
+        if not self.surfaces:
+            raise TiskelError("no branch has a surface of its own, only the whole body has one; roll over that")
         if name is None:
             return max(self.surfaces, key=lambda s: s.length)
         known = [s.name for s in self.surfaces]

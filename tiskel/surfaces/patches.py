@@ -124,6 +124,13 @@ class BodySurface:
         Median of the local radii at the points.
     warnings : tuple of str
         Where the surface may be wrong, and why.
+
+    Examples
+    --------
+    >>> from tiskel import ShapeParams, fit_body, make_shape, shape_graph
+    >>> body = fit_body(make_shape(shape_graph("capsule"), ShapeParams(count=1000))[1])
+    >>> body.trust(body.cloud[:2]).tolist(), bool((abs(body.level(body.cloud).value) < 0.01 * body.radius).all())
+    ([2, 2], True)
     """
 
     patches: Patches
@@ -160,3 +167,13 @@ class BodySurface:
             return {"mean": np.nan, "p95": np.nan, "coverage": 0.0}
         coverage = float((far < NEAR).sum() / len(self.cloud))
         return {"mean": float(far.mean()), "p95": float(np.quantile(far, 0.95)), "coverage": coverage}
+
+    @property
+    def of_tubes(self) -> float:
+        """The share of the patches that are of tubes."""
+        return float(self.patches.of_tube.mean())
+
+    def share(self, trust: int) -> float:
+        """Return the share of the surface that is worth so much, see :class:`Trust`."""
+        area = self.patches.supports**2
+        return float(area[self.patches.trust == trust].sum() / area.sum())

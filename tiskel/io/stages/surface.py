@@ -6,7 +6,8 @@
      "surfaces": [{"branch", "nodes", "closed", "frame", "note", "length", "radius", "order", "error", "warnings",
                    "trimmed", "distance": {"mean", "p95", "max"}, "rows",
                    "axis", "field", "series": coefficients of quintic B-splines,
-                   "unseen", "sections": [{"v", "case", "points", "gap", "gap_at", "error", "series"}, ...]}, ...]}
+                   "unseen", "sections": [{"v", "case", "points", "gap", "gap_at", "error", "series"}, ...]}, ...],
+     "body": the surface of the whole body, see :mod:`tiskel.io.stages.body`; null or absent where there is none}
 
 Lengths are in the input's unit, angles in radians, rows count from 0 in
 ``cloud``. A spline with b rows of coefficients has b - 5 even intervals from
@@ -33,6 +34,7 @@ from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import DEGREE, BSplineCurve
 from tiskel.io import ply
+from tiskel.io.stages.body import body_document, body_of
 from tiskel.io.streams import read_bytes, write_bytes
 from tiskel.params import SurfaceParams
 from tiskel.slicing.fitted import Coverage, FittedSurface, Surfaces
@@ -90,6 +92,7 @@ def dump_surfaces(
         "coverage": None if surfaces.coverage is None else asdict(surfaces.coverage),
         "surfaces": [_surface_document(surface) for surface in surfaces],
         "cloud": surfaces.cloud.tolist(),
+        "body": None if surfaces.body is None else body_document(surfaces.body),
     }
     return (json.dumps(document, allow_nan=False) + "\n").encode()
 
@@ -174,11 +177,12 @@ def parse_surfaces(data: bytes, name: str) -> Surfaces:
         surfaces = tuple(_surface_of(one, cloud) for one in document["surfaces"])
         coverage = _coverage_of(document.get("coverage"))
         rejected = {str(branch): str(reason) for branch, reason in document["rejected"].items()}
+        body = None if document.get("body") is None else body_of(document["body"], cloud)
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise TiskelError(f"{name} is a damaged surface file: {error!r}; run tiskel slice again") from None
-    if not surfaces:
+    if not surfaces and body is None:
         raise TiskelError(f"{name} holds no surface; run tiskel slice again")
-    return Surfaces(surfaces, rejected, cloud, coverage)
+    return Surfaces(surfaces, rejected, cloud, coverage, body)
 
 
 def _coverage_of(one: dict[str, Any] | None) -> Coverage | None:
