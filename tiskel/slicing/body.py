@@ -5,20 +5,24 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Numbers, Points, as_points
+from tiskel.arrays import TINY, Indices, Numbers, Points, as_points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.quadrics import Quadrics
 from tiskel.params import BodyParams, SurfaceParams
 from tiskel.progress import Report
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.body_points import BodyPoints, body_points
+from tiskel.slicing.body_tubes import on_tubes
 from tiskel.slicing.fit import fit_surface
 from tiskel.slicing.fitted import NoTubeError, Surfaces
 from tiskel.surfaces.implicit import projected
 from tiskel.surfaces.patches import BodySurface, Patches, Trust
 
-FOURTH = 4  # neighbour; within one and a half of its distance there is always another patch
+FEW = 4  # neighbours; within one and a half times the distance to the last there is always another patch
 LEAST_REACH = 1.5
+TUBE_WIDTH = 0.35  # local radii that a patch of a tube is wide
+TURN = 0.4  # radians that a tube bends over the width of a patch at most
 
 
 def fit_body(
@@ -60,7 +64,7 @@ def fit_body(
         raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
     every = as_points(skeleton.cloud if cloud is None else cloud)  # type: ignore[attr-defined]
     body = body_points(skeleton, every, params)
-    surface = BodySurface(_patches(body, params).sorted(), every, np.zeros(0), float(np.median(body.radii)))
+    surface = BodySurface(_patches(body, surfaces, params).sorted(), every, np.zeros(0), float(np.median(body.radii)))
     distances = np.full(len(every), np.nan)
     distances[body.rows] = np.linalg.norm(projected(surface, body.points) - body.points, axis=1)
     return replace(surface, distances=distances)
@@ -107,18 +111,38 @@ def fit_whole(
     return replace(found, body=fit_body(skeleton, found, body, found.cloud))
 
 
-def _patches(body: BodyPoints, params: BodyParams) -> Patches:
-    """Return the quadrics about some of the points, with supports that end before opposite walls."""
-    supports = np.minimum(body.widths, params.facing * body.opposite)
-    supports = np.maximum(supports, LEAST_REACH * body.far[:, min(FOURTH, body.far.shape[1] - 1)])
-    rows = spread(body.points, params.spread * supports)
-    found = body.chosen(rows)
-    foot = -found.gradient * (found.value / (found.gradient**2).sum(axis=1))[:, None]
-    value, gradient, hessian, _ = found.moved(foot)
+def _patches(body: BodyPoints, surfaces: Surfaces | None, params: BodyParams) -> Patches:
+    """Return the quadrics about some of the points, with supports that end before opposite walls.
+
+    Of tubes where these explain the points, else through the points themselves.
+    """
+    tubes = on_tubes(body, surfaces, params)
+    smooth = np.minimum(TUBE_WIDTH * body.radii, TURN / np.maximum(tubes.bends, TINY))
+    widths = np.where(tubes.there, np.maximum(smooth, body.far[:, FEW]), body.widths)
+    least = LEAST_REACH * body.far[:, FEW]
+    supports = np.maximum(np.minimum(params.reach * widths, params.facing * body.opposite), least)
+    rows = spread(body.points, params.spread * np.minimum(supports, widths))
+    there = tubes.there[rows]
+    centres, found = (
+        np.empty((len(rows), 3)),
+        Quadrics(*(np.empty((len(rows), *size)) for size in ((), (3,), (6,), ()))),
+    )
+    free = rows[~there]
+    if len(free):
+        fitted = body.chosen(free)
+        foot = -fitted.gradient * (fitted.value / (fitted.gradient**2).sum(axis=1))[:, None]
+        centres[~there] = body.points[free] + foot
+        for column, values in zip(found, fitted.moved(foot), strict=True):
+            column[~there] = values
+    owned = rows[there]
+    centres[there] = tubes.places[owned]
+    for column, values in zip(
+        found[:3], (np.zeros(len(owned)), tubes.normals[owned], tubes.hessians[owned]), strict=True
+    ):
+        column[there] = values
     return Patches(
-        body.points[rows] + foot, supports[rows], value, gradient, hessian, body.radii[rows],
-        np.full(len(rows), Trust.MEASURED, np.uint8), np.zeros(len(rows), bool),
-    )  # fmt: skip
+        centres, supports[rows], *found[:3], body.radii[rows], np.full(len(rows), Trust.MEASURED, np.uint8), there
+    )
 
 
 def spread(points: Points, apart: Numbers) -> Indices:

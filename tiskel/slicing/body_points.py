@@ -16,7 +16,7 @@ from tiskel.skeleton import Skeleton
 
 TOWARDS = 0.5  # cosine from which on points count fully for one another; none where they look apart
 AGAINST = -0.3  # cosine below which a point is on an opposite wall
-POOLED = 12  # nearest points whose median error is that of one of them
+POOLED = 30  # nearest points whose median error is that of one of them; of 12, noisy curvatures are twice as far off
 REACH = 1.05  # of the distance to the last neighbour: where weights end, so that the last one counts
 ROUNDS = 2  # normals of the first quadrics make the second better, those of the second hardly the third
 BATCH = 8192  # points at a time, which bounds the memory
@@ -42,6 +42,8 @@ class BodyPoints:
         How far these are.
     count : (n,) int32
         How many of these a quadric is fitted to.
+    error : (n,) float64
+        How far points about it are off that, root mean square.
     """
 
     rows: Indices
@@ -51,6 +53,7 @@ class BodyPoints:
     near: Lists
     far: Table
     count: Indices
+    error: Numbers
 
     @property
     def widths(self) -> Numbers:
@@ -112,7 +115,7 @@ def body_points(curve: CurveGraph, cloud: Points, params: BodyParams) -> BodyPoi
     normals = oriented_cloud(points, targets).normals
     near, squares = nearest_neighbours(points, min(params.neighbours[-1], len(points)))
     least = np.full(len(points), min(params.neighbours[0], len(points)), np.int32)
-    body = BodyPoints(rows, points, normals, radii, near, np.sqrt(squares), least)
+    body = BodyPoints(rows, points, normals, radii, near, np.sqrt(squares), least, np.zeros(len(points)))
     for _ in range(ROUNDS):
         body = _smoothed(body, params)
     return body
@@ -125,7 +128,7 @@ def _smoothed(body: BodyPoints, params: BodyParams) -> BodyPoints:
     of the body makes it grow (Lepski's rule).
     """
     size = len(body.points)
-    least, error = np.full(size, np.inf), np.full(size, np.nan)
+    least, error, errors = np.full(size, np.inf), np.full(size, np.nan), np.zeros(size)
     count, normals, rows = body.count.copy(), body.normals.copy(), np.arange(size, dtype=np.int32)
     for tried in (some for some in params.neighbours if some <= body.near.shape[1]):
         found = body.quadrics(rows, tried)
@@ -136,6 +139,6 @@ def _smoothed(body: BodyPoints, params: BodyParams) -> BodyPoints:
         fits = (pooled <= enough) & (REACH * body.far[rows, tried - 1] < params.widest * body.radii[rows])
         fits |= tried == params.neighbours[0]
         slope, rows = found.gradient[fits], rows[fits]
-        count[rows] = tried
+        count[rows], errors[rows] = tried, pooled[fits]
         normals[rows] = slope / np.linalg.norm(slope, axis=1)[:, None]
-    return replace(body, normals=normals, count=count)
+    return replace(body, normals=normals, count=count, error=errors)
