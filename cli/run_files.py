@@ -22,7 +22,7 @@ from tiskel.pictures.skeleton import skeleton_picture
 from tiskel.pictures.slices import slices_picture
 from tiskel.pictures.stability import stability_picture
 from tiskel.pipeline import PipelineResult
-from tiskel.slicing.mesh import joined_mesh, surface_mesh
+from tiskel.slicing.body_mesh import mesh_of
 
 Files = dict[str, Callable[[], bytes]]
 
@@ -51,9 +51,10 @@ def _surface_files(result: PipelineResult, source: dict[str, str]) -> Files:
         return {}
     files: Files = {
         "surface.json": lambda: dump_surfaces(surfaces, result.params.surface, source),
-        "surface.ply": lambda: dump_mesh(joined_mesh([surface_mesh(s) for s in surfaces]), source),
-        "slices.csv": lambda: slices_csv(surfaces),
+        "surface.ply": lambda: dump_mesh(mesh_of(surfaces), source),
     }
+    if len(surfaces):
+        files["slices.csv"] = lambda: slices_csv(surfaces)
     return files | ({"path.csv": lambda: to_csv(runs)} if runs else {})
 
 
@@ -70,7 +71,7 @@ def pictures_of(result: PipelineResult, cloud: Cloud) -> Files:
         "metrics.png": quality_picture([(title, s.cloud, result.quality)]),
         "stability.png": stability_picture(c, result.stability, title),
     }
-    if result.surfaces is not None:
+    if result.surfaces is not None and len(result.surfaces):
         drawn["slices.png"] = slices_picture(result.surfaces, title)
     if result.surface is not None and result.trajectories:
         drawn["roll.png"] = rolling_picture(result.surface, result.trajectories, title)

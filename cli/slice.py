@@ -33,7 +33,7 @@ MeshFile = Annotated[
     typer.Option(
         "--mesh",
         metavar="OUT",
-        help="Also the surfaces as triangles, PLY.",
+        help="Also the surface of the whole body as triangles, closed; PLY with normals, curvatures and trust.",
         show_default=False,
         rich_help_panel="Output",
     ),
@@ -41,7 +41,11 @@ MeshFile = Annotated[
 NoBody = Annotated[
     bool, typer.Option("--no-body", help="Leave the surface of the whole body out.", rich_help_panel="Method")
 ]
-Caps = Annotated[bool, typer.Option("--caps", help="Close the ends of the triangles.", rich_help_panel="Output")]
+Tubes = Annotated[
+    bool,
+    typer.Option("--tubes", help="Triangles of the branches instead, each a tube.", rich_help_panel="Output"),
+]
+Caps = Annotated[bool, typer.Option("--caps", help="The same, the ends of the tubes closed.", rich_help_panel="Output")]
 TableFile = Annotated[
     Path | None,
     typer.Option(
@@ -66,6 +70,7 @@ def slice_command(
     no_recentre: so.NoRecentre = not so.SURFACE.recentre,
     no_body: NoBody = False,
     mesh: MeshFile = None,
+    tubes: Tubes = False,
     caps: Caps = False,
     table: TableFile = None,
     plot: o.Plot = None,
@@ -81,10 +86,14 @@ def slice_command(
     console.tell(messages.of_surfaces(surfaces))
     from tiskel.io.mesh_file import dump_mesh
     from tiskel.io.stages.surface import dump_surfaces
-    from tiskel.slicing.mesh import joined_mesh, surface_mesh
+    from tiskel.slicing.body_mesh import mesh_of, tubes_mesh
 
+    if (tubes or caps or table is not None or plot is not None) and not len(surfaces):
+        raise TiskelError("no branch has a tube: there are no slices to draw or tabulate; leave out what asks for them")
     if mesh is not None:
-        stages.write(mesh, lambda: dump_mesh(joined_mesh([surface_mesh(s, caps=caps) for s in surfaces]), origin))
+        stages.write(
+            mesh, lambda: dump_mesh(tubes_mesh(surfaces, caps) if tubes or caps else mesh_of(surfaces), origin)
+        )
     if table is not None:
         stages.write(table, lambda: slices_csv(surfaces))
     if plot is not None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from tiskel.errors import TiskelError
-from tiskel.params.checks import between
+from tiskel.params.checks import at_least, between
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +26,8 @@ class BodyParams:
     facing: float = 0.8  #: of the distance to an opposite wall, that a patch counts at most
     tubes: float = 0.002  #: local radii that a tube may be worse than a quadric and still count in its place
 
+    most: int = 60_000  #: points that it is fitted to; of more, evenly many are taken
+
     def __post_init__(self) -> None:
         counts = self.neighbours
         if not counts or counts[0] < 10 or any(a >= b for a, b in zip(counts, counts[1:], strict=False)):
@@ -33,5 +35,6 @@ class BodyParams:
         for name in ("noise", "widest", "reach", "facing"):
             between(name, getattr(self, name), 0.1, 10.0)
         between("spread", self.spread, 0.05, 1.0)
+        at_least("most", self.most, 100)
         between("exact", self.exact, 0.0, 1.0)
         between("tubes", self.tubes, 0.0, 1.0)

@@ -9,6 +9,7 @@ from tiskel.arrays import TINY, Indices, Numbers, Points, as_points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.quadrics import Quadrics
+from tiskel.geometry.strays import body_rows
 from tiskel.params import BodyParams, SurfaceParams
 from tiskel.progress import Report
 from tiskel.skeleton import Skeleton
@@ -17,10 +18,11 @@ from tiskel.slicing.body_tubes import on_tubes
 from tiskel.slicing.fit import fit_surface
 from tiskel.slicing.fitted import NoTubeError, Surfaces
 from tiskel.surfaces.implicit import projected
-from tiskel.surfaces.patches import BodySurface, Patches, Trust
+from tiskel.surfaces.patches import BodySurface, Patches
 
-FEW = 4  # neighbours; within one and a half times the distance to the last there is always another patch
-LEAST_REACH = 1.5
+FEW = 4  # neighbours; twice the distance to the last there is always another patch
+LEAST_REACH = 2.0
+ROUNDS, GRADE = 3, 0.7  # of grading supports, and how fast they grow
 TUBE_WIDTH = 0.35  # local radii that a patch of a tube is wide
 TURN = 0.4  # radians that a tube bends over the width of a patch at most
 
@@ -64,9 +66,12 @@ def fit_body(
         raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
     every = as_points(skeleton.cloud if cloud is None else cloud)  # type: ignore[attr-defined]
     body = body_points(skeleton, every, params)
-    surface = BodySurface(_patches(body, surfaces, params).sorted(), every, np.zeros(0), float(np.median(body.radii)))
+    surface = BodySurface(
+        _patches(body, surfaces, params).sorted(), every, np.zeros(0), float(np.median(body.radii[body.seen]))
+    )
     distances = np.full(len(every), np.nan)
-    distances[body.rows] = np.linalg.norm(projected(surface, body.points) - body.points, axis=1)
+    whole = body_rows(every)
+    distances[whole] = np.linalg.norm(projected(surface, every[whole]) - every[whole], axis=1)
     return replace(surface, distances=distances)
 
 
@@ -121,6 +126,7 @@ def _patches(body: BodyPoints, surfaces: Surfaces | None, params: BodyParams) ->
     widths = np.where(tubes.there, np.maximum(smooth, body.far[:, FEW]), body.widths)
     least = LEAST_REACH * body.far[:, FEW]
     supports = np.maximum(np.minimum(params.reach * widths, params.facing * body.opposite), least)
+    supports = np.maximum(graded(supports, body), least)
     rows = spread(body.points, params.spread * np.minimum(supports, widths))
     there = tubes.there[rows]
     centres, found = (
@@ -140,9 +146,17 @@ def _patches(body: BodyPoints, surfaces: Surfaces | None, params: BodyParams) ->
         found[:3], (np.zeros(len(owned)), tubes.normals[owned], tubes.hessians[owned]), strict=True
     ):
         column[there] = values
-    return Patches(
-        centres, supports[rows], *found[:3], body.radii[rows], np.full(len(rows), Trust.MEASURED, np.uint8), there
-    )
+    return Patches(centres, supports[rows], *found[:3], body.radii[rows], body.trust(rows), there)
+
+
+def graded(supports: Numbers, body: BodyPoints) -> Numbers:
+    """Return supports (n,) that do not grow faster than by half the way from point to point.
+
+    Beyond an edge only patches of one face would count otherwise, as if it went on.
+    """
+    for _ in range(ROUNDS):
+        supports = np.minimum(supports, (supports[body.near] + GRADE * body.far).min(axis=1))
+    return supports
 
 
 def spread(points: Points, apart: Numbers) -> Indices:

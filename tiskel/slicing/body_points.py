@@ -3,22 +3,26 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Lists, Numbers, Points, Table, first_of_duplicates
+from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, Table, first_of_duplicates
 from tiskel.geometry.graph import CurveGraph
-from tiskel.geometry.neighbours import nearest_neighbours
-from tiskel.geometry.oriented import oriented_cloud
+from tiskel.geometry.neighbours import morton_curve, nearest_neighbours
+from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
 from tiskel.geometry.quadrics import Quadrics, fit_quadrics
 from tiskel.geometry.strays import body_rows
 from tiskel.params import BodyParams
 from tiskel.skeleton import Skeleton
+from tiskel.slicing.body_gaps import lids_of
+from tiskel.surfaces.patches import Trust
 
 TOWARDS = 0.5  # cosine from which on points count fully for one another; none where they look apart
 AGAINST = -0.3  # cosine below which a point is on an opposite wall
 POOLED = 30  # nearest points whose median error is that of one of them; of 12, noisy curvatures are twice as far off
 REACH = 1.05  # of the distance to the last neighbour: where weights end, so that the last one counts
 ROUNDS = 2  # normals of the first quadrics make the second better, those of the second hardly the third
+LIDS, ASIDE = 0.1, 0.35  # share of a neighbourhood that closes gaps, and widths that its middle is off, of little seen
 BATCH = 8192  # points at a time, which bounds the memory
 
 
@@ -29,7 +33,7 @@ class BodyPoints:
     Attributes
     ----------
     rows : (n,) int32
-        Their rows in the cloud.
+        Their rows in the cloud; -1 for places that close gaps of it.
     points : (n, 3) float64
         Distinct, in the cloud's unit.
     normals : (n, 3) float64
@@ -44,6 +48,8 @@ class BodyPoints:
         How many of these a quadric is fitted to.
     error : (n,) float64
         How far points about it are off that, root mean square.
+    trusted : bool
+        Whether the normals agree on which side is out.
     """
 
     rows: Indices
@@ -54,11 +60,32 @@ class BodyPoints:
     far: Table
     count: Indices
     error: Numbers
+    trusted: bool
 
     @property
     def widths(self) -> Numbers:
         """(n,) how far the neighbourhoods reach that quadrics are fitted to."""
         return np.asarray(REACH * self.far[np.arange(len(self.far)), self.count - 1])
+
+    @property
+    def seen(self) -> Mask:
+        """(n,) which are points of the cloud."""
+        return np.asarray(self.rows >= 0)
+
+    def trust(self, rows: Indices) -> npt.NDArray[np.uint8]:
+        """Return (m,) what a quadric about some rows (m,) is worth, see :class:`tiskel.Trust`.
+
+        Little is seen where points are missing on one side, or places that close a gap are among them.
+        """
+        out = np.empty(len(rows), np.uint8)
+        for count in np.unique(self.count[rows]).tolist():
+            some = np.flatnonzero(self.count[rows] == count)
+            near, width = self.near[rows[some], :count], self.widths[rows[some]]
+            lids = (~self.seen[near]).mean(axis=1)
+            aside = np.linalg.norm(self.points[near].mean(axis=1) - self.points[rows[some]], axis=1)
+            out[some] = np.where((lids > LIDS) | (aside > ASIDE * width), Trust.SEEN, Trust.MEASURED)
+        out[~self.seen[rows]] = Trust.BRIDGED
+        return out
 
     @property
     def opposite(self) -> Numbers:
@@ -106,19 +133,36 @@ def body_points(curve: CurveGraph, cloud: Points, params: BodyParams) -> BodyPoi
     """
     rows = np.flatnonzero(body_rows(cloud)).astype(np.int32)
     rows = rows[first_of_duplicates(cloud[rows]) == np.arange(len(rows))]
+    if len(rows) > params.most:  # evenly along a curve through all of space, so as dense as they were in proportion
+        order = morton_curve(np.ascontiguousarray(cloud[rows])).order
+        rows = np.sort(rows[order[np.linspace(0, len(order) - 1, params.most).astype(int)]])
     points = np.ascontiguousarray(cloud[rows])
     known = isinstance(curve, Skeleton) and len(curve.node_of_point) == len(cloud)
     node = curve.node_of_point[rows] if known else cKDTree(curve.nodes).query(points)[1]  # type: ignore[attr-defined]
     targets = np.ascontiguousarray(curve.nodes[node])
     away = np.linalg.norm(points - targets, axis=1)
     radii = np.where(curve.radii[node] > 0, curve.radii[node], away)
-    normals = oriented_cloud(points, targets).normals
-    near, squares = nearest_neighbours(points, min(params.neighbours[-1], len(points)))
-    least = np.full(len(points), min(params.neighbours[0], len(points)), np.int32)
-    body = BodyPoints(rows, points, normals, radii, near, np.sqrt(squares), least, np.zeros(len(points)))
+    oriented = oriented_cloud(points, targets)
+    body = _with_lids(rows, oriented, radii, params)
     for _ in range(ROUNDS):
         body = _smoothed(body, params)
     return body
+
+
+def _with_lids(rows: Indices, surface: OrientedCloud, radii: Numbers, params: BodyParams) -> BodyPoints:
+    """Return the points and the places that close their gaps, where normals agree on which side is out."""
+    points, normals = surface.points, surface.normals
+    if surface.trusted:
+        lids = lids_of(surface)
+        nearest = cKDTree(points).query(lids.points)[1]
+        points, normals = np.concatenate([points, lids.points]), np.concatenate([normals, lids.normals])
+        radii = np.concatenate([radii, radii[nearest]])
+        rows = np.concatenate([rows, np.full(len(lids.points), -1, np.int32)])
+    near, squares = nearest_neighbours(points, min(params.neighbours[-1], len(points)))
+    least = np.full(len(points), min(params.neighbours[0], len(points)), np.int32)
+    return BodyPoints(
+        rows, points, normals, radii, near, np.sqrt(squares), least, np.zeros(len(points)), surface.trusted
+    )  # fmt: skip
 
 
 def _smoothed(body: BodyPoints, params: BodyParams) -> BodyPoints:
