@@ -63,7 +63,7 @@ def undocumented(path: Path) -> list[str]:
 
 
 # What a protocol or a base class documents is not said again where it is implemented.
-OF_A_PROTOCOL = {"jet", "v_range", "periods", "forms", "frame", "rates", "neighbours_for"}
+OF_A_PROTOCOL = {"jet", "level", "v_range", "periods", "forms", "frame", "rates", "neighbours_for"}
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda p: p.relative_to(ROOT).as_posix())
