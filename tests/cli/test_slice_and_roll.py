@@ -4,9 +4,11 @@ import csv
 import io
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 
 from reference.fixtures import Runner, one_error_line
 from tiskel import contract, extract_skeleton, make_shape, read_surfaces, shape_graph, write_skeleton
@@ -60,6 +62,27 @@ def test_every_file_of_slice_is_written(tiskel: Runner, skeleton: Path, tmp_path
     said = json.loads(tiskel("info", "f.json").stdout)
     assert said["stage"] == "surface"
     assert said["surfaces"]["0"]["slices"]["fitted"] > 40
+
+
+def test_the_whole_body_has_a_surface_and_a_closed_mesh(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
+    """Where no branch has a tube, too; what needs slices is then refused."""
+    done = tiskel("slice", skeleton.name, "--interval", 0.9, "-o", "f.json", "--mesh", "m.ply")
+    assert done.returncode == 0
+    assert b"branch 0 has no surface" in done.stderr
+    assert b"whole body: " in done.stderr
+    found = read_surfaces(tmp_path / "f.json")
+    assert found.body is not None
+    assert (len(found), found.body.summary["coverage"]) == (0, 1.0)
+    mesh: Any = trimesh.load(tmp_path / "m.ply", process=False)
+    assert mesh.is_watertight
+    assert b"property uchar trust" in (tmp_path / "m.ply").read_bytes()[:1000]
+    assert json.loads(tiskel("info", "f.json").stdout)["body"]["patches"] == len(found.body.patches)
+    for word in ("--plot", "--csv"):
+        assert (
+            "no branch has a tube" in tiskel("slice", skeleton.name, "--interval", 0.9, word, "p.png").stderr.decode()
+        )
+    tiskel("slice", skeleton.name, "--no-body", "-o", "g.json")
+    assert read_surfaces(tmp_path / "g.json").body is None
 
 
 def test_every_file_of_roll_is_written(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:

@@ -19,7 +19,8 @@ from tiskel.arrays import Lists, Numbers, Points, Stack, Table
 TERMS = 10  # of a quadric: 1, x, y, z, xx/2, yy/2, zz/2, xy, xz, yz
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # xx, yy, zz, xy, xz, yz
 HELD = 0.3  # weight of gradients, in radii; 0.1 doubles errors of curvature where there is noise, 1 where there is none
-RIDGE = 1e-7  # of the mean diagonal: for what no point determines, as on a line of points
+RIDGE = 1e-7  # of the sum of weights: for what no point determines, as on a line of points
+HELD_ALIKE = np.array([1.0] * 7 + [2.0] * 3)  # mixed terms stand twice in a Hessian: so it is held in all axes alike
 LEAST_LEFT = 0.2  # of a point's own residual: what it is off the others is at most five times that
 BATCH = 2048  # neighbourhoods at a time, which bounds the memory
 
@@ -115,7 +116,7 @@ def _fitted(centres: Points, points: Stack, normals: Stack, weights: Table, radi
     right = np.matmul(weighted[:, :, :4].transpose(0, 2, 1), normals)  # sums of w n and of w d n^T
     matrix, target = matrix + HELD**2 * _of_slopes(matrix), HELD**2 * _of_normals(right)
     diagonal = np.arange(TERMS)
-    matrix[:, diagonal, diagonal] += RIDGE * np.trace(matrix, axis1=1, axis2=2)[:, None] / TERMS + 1e-300
+    matrix[:, diagonal, diagonal] += RIDGE * matrix[:, :1, 0] * HELD_ALIKE + 1e-300
     inverse = np.linalg.inv(matrix)
     found = np.matmul(inverse, target[:, :, None])[:, :, 0]
     off = np.matmul(rows, found[:, :, None])[:, :, 0]

@@ -18,11 +18,12 @@ from tiskel.slicing.body_tubes import on_tubes
 from tiskel.slicing.fit import fit_surface
 from tiskel.slicing.fitted import NoTubeError, Surfaces
 from tiskel.surfaces.implicit import projected
-from tiskel.surfaces.patches import BodySurface, Patches
+from tiskel.surfaces.patches import BodySurface, Patches, Trust
 
 FEW = 4  # neighbours; twice the distance to the last there is always another patch
 LEAST_REACH = 2.0
 ROUNDS, GRADE = 3, 0.7  # of grading supports, and how fast they grow
+COVERED, LAID = 0.9, 0.1  # share of the points that are near, and of the surface over gaps, that are worth a warning
 TUBE_WIDTH = 0.35  # local radii that a patch of a tube is wide
 TURN = 0.4  # radians that a tube bends over the width of a patch at most
 
@@ -72,7 +73,19 @@ def fit_body(
     distances = np.full(len(every), np.nan)
     whole = body_rows(every)
     distances[whole] = np.linalg.norm(projected(surface, every[whole]) - every[whole], axis=1)
-    return replace(surface, distances=distances)
+    surface = replace(surface, distances=distances)
+    return replace(surface, warnings=_doubts(surface, body.trusted))
+
+
+def _doubts(surface: BodySurface, trusted: bool) -> tuple[str, ...]:
+    """Return warnings about the surface of a body."""
+    near, bridged = surface.summary["coverage"], surface.share(Trust.BRIDGED)
+    told = {
+        "its normals do not agree on which side is out; it may be inside out in places, and gaps are open": not trusted,
+        f"only {near:.0%} of the points are within 5 % of the local radius of it": near < COVERED,
+        f"{bridged:.0%} of it was laid over gaps": bridged > LAID,
+    }
+    return tuple(f"whole body: {line}" for line, holds in told.items() if holds)
 
 
 def fit_whole(
@@ -150,7 +163,7 @@ def _patches(body: BodyPoints, surfaces: Surfaces | None, params: BodyParams) ->
 
 
 def graded(supports: Numbers, body: BodyPoints) -> Numbers:
-    """Return supports (n,) that do not grow faster than by half the way from point to point.
+    """Return supports (n,) that do not grow faster than by a share of the way from point to point.
 
     Beyond an edge only patches of one face would count otherwise, as if it went on.
     """
