@@ -80,7 +80,7 @@ def of_stability(stability: "Stability") -> Messages:
 
 
 def of_surfaces(surfaces: "Surfaces") -> Messages:
-    """Return a line for every surface, why other branches have none, how much they cover, that of the body, then warnings."""
+    """Return a line for every surface, why other branches have none, coverage, that of the body, then the warnings."""
     rejected = (f"branch {name} has no surface: {reason}" for name, reason in surfaces.rejected.items())
     body = () if surfaces.body is None else (surfaces.body,)
     warnings = (warning for surface in (*surfaces, *body) for warning in surface.warnings)
