@@ -60,6 +60,7 @@ COMMANDS = {
     ),
     "slice": Entry("slice", "slice_command", "Fit a smooth surface around every branch of a skeleton, slice by slice."),
     "roll": Entry("roll", "roll", "Roll a sphere over a surface."),
+    "plan": Entry("plan", "plan", "Plan how to roll a sphere from a contact to another, and to an attitude."),
 }  # fmt: skip
 
 

@@ -26,6 +26,16 @@ BranchName = Annotated[
         rich_help_panel="Method",
     ),
 ]
+Body = Annotated[
+    str | None,
+    typer.Option(
+        "--body",
+        metavar="ellipsoid:a,b,c|cylinder:r,h|FILE",
+        help="Roll this in place of a sphere, or a branch of another surface.json.",
+        show_default=False,
+        rich_help_panel="Method",
+    ),
+]
 Summary = Annotated[
     bool, typer.Option("--json", help="A summary in JSON on standard output.", rich_help_panel="Output")
 ]
@@ -48,6 +58,11 @@ def roll(
     start: so.Start = so.START,
     start_at: so.StartAt = None,
     normals: so.NormalsName = so.ROLL.normals,
+    heading: so.Heading = None,
+    start_attitude: so.AttitudeAtStart = None,
+    on_meeting: so.MeetingName = so.ROLL.on_meeting,
+    trusted: so.TrustedName = so.ROLL.trusted,
+    body: Body = None,
     rtol: so.Rtol = so.ROLL.rtol,
     atol: so.Atol = so.ROLL.atol,
     as_json: Summary = False,
@@ -56,24 +71,31 @@ def roll(
 ) -> None:
     """Roll a sphere over a surface.
 
-    Reads surface.json, writes the trajectory as CSV, with --json the summary in its place unless -o names a file:
+    Reads surface.json, writes the trajectory as CSV, with -o also as TUM (.tum) or as a nav_msgs/Path (.yaml), with
+    --json the summary in its place unless -o names a file:
     `tiskel slice s.ply | tiskel roll - --omega 1,0,0 --duration 5 > path.csv`
     """
     settings = so.roll_settings(
         model, side, radius, omega, duration, start, rtol, atol,
         velocity=velocity, twist=twist, rate=rate, start_at=start_at, normals=normals,
+        heading=heading, start_attitude=start_attitude, on_meeting=on_meeting, trusted=trusted,
     )  # fmt: skip
     given = so.inputs_of(inputs)
     so.refuse_both(given is not None, omega, velocity)
     if model == "both" and normals == "pca":
         console.warn(("--normals pca counts for the global model; the local one keeps those of its surface",))
-    from tiskel import roll as run
-    from tiskel.io.stages.roll import to_csv
+    if body is not None:
+        from tiskel.cli.roll_body import rolled
+
+        return rolled(source, output, branch, body, settings, given, as_json, pictured=bool(plot or animate))
     from tiskel.io.stages.surface import read_surfaces
+    from tiskel.io.stages.trajectories import as_suffixed
+    from tiskel.rolling.over import ground_of, roll_over
 
     with shown(reading(source)) as progress:
-        surface = read_surfaces(source).named(branch)
-        runs = [run(surface, params, given, progress=progress) for params in settings]
+        surfaces = read_surfaces(source)
+        surface = ground_of(surfaces, settings[0], branch)
+        runs = [roll_over(surfaces, params, given, branch=branch, progress=progress) for params in settings]
     console.tell(messages.of_runs(runs))
     if plot is not None:
         from tiskel.pictures.canvas import picture_kind
@@ -86,9 +108,11 @@ def roll(
 
         stages.write(animate, lambda: animation(surface, runs[0], picture_kind(str(animate))))
     if as_json:
-        typer.echo(json.dumps(summary(surface.name, runs), allow_nan=False))
+        typer.echo(json.dumps(summary(getattr(surface, "name", "body"), runs), allow_nan=False))
     if output is not None or not as_json:
-        stages.write(stages.output_path(output, source, "path.csv"), lambda: to_csv(runs))
+        target = stages.output_path(output, source, "path.csv")
+        stages.write(target, lambda: as_suffixed(str(target), runs))
+    return None
 
 
 def summary(branch: str, runs: "Sequence[Trajectory]") -> dict[str, Any]:

@@ -22,6 +22,7 @@ from tiskel.pictures.skeleton import skeleton_picture
 from tiskel.pictures.slices import slices_picture
 from tiskel.pictures.stability import stability_picture
 from tiskel.pipeline import PipelineResult
+from tiskel.rolling.over import ground_of
 from tiskel.slicing.body_mesh import mesh_of
 
 Files = dict[str, Callable[[], bytes]]
@@ -59,8 +60,11 @@ def _surface_files(result: PipelineResult, source: dict[str, str]) -> Files:
 
 
 def _roll_documents(result: PipelineResult) -> Files:
-    surface, runs = result.surface, result.trajectories
-    return {"roll.json": lambda: _document(summary(surface.name, runs))} if surface is not None and runs else {}
+    runs = result.trajectories
+    if not runs:
+        return {}
+    name = "body" if result.surface is None or runs[0].params.model == "body" else result.surface.name
+    return {"roll.json": lambda: _document(summary(name, runs))}
 
 
 def pictures_of(result: PipelineResult, cloud: Cloud) -> Files:
@@ -73,8 +77,9 @@ def pictures_of(result: PipelineResult, cloud: Cloud) -> Files:
     }
     if result.surfaces is not None and len(result.surfaces):
         drawn["slices.png"] = slices_picture(result.surfaces, title)
-    if result.surface is not None and result.trajectories:
-        drawn["roll.png"] = rolling_picture(result.surface, result.trajectories, title)
+    if result.surfaces is not None and result.trajectories:
+        ground = ground_of(result.surfaces, result.trajectories[0].params)
+        drawn["roll.png"] = rolling_picture(ground, result.trajectories, title)
     return {name: partial(bytes, data) for name, data in drawn.items()}
 
 

@@ -9,12 +9,18 @@ from tiskel.cli.options import PIPELINE
 from tiskel.cli.stages import numbers_of
 from tiskel.errors import TiskelError
 from tiskel.params import FrameRule, Model, Normals, OrderRule, RollParams, Side, SurfaceParams, Twist
+from tiskel.params.roll import OnMeeting, Trusted
 
 if TYPE_CHECKING:
     from tiskel.rolling.inputs import Inputs
 
-Models = Literal["global", "local", "both"]
-MODELS: dict[Models, tuple[Model, ...]] = {"global": ("global",), "local": ("local",), "both": ("global", "local")}
+Models = Literal["global", "local", "both", "body"]
+MODELS: dict[Models, tuple[Model, ...]] = {
+    "global": ("global",),
+    "local": ("local",),
+    "both": ("global", "local"),
+    "body": ("body",),
+}
 SURFACE, ROLL = PIPELINE.surface, RollParams()
 USUAL = next(name for name, models in MODELS.items() if models == tuple(run.model for run in PIPELINE.roll))
 
@@ -58,14 +64,14 @@ ModelsName = Annotated[
     Models,
     typer.Option(
         "--model",
-        help="The surface as it is, or straight along its skeleton; both side by side.",
+        help="A branch as it is, or straight along its skeleton, or both side by side; or the whole body.",
         rich_help_panel="Method",
     ),
 ]
 SideName = Annotated[Side, typer.Option("--side", help="Of the surface.", rich_help_panel="Method")]
 _SPHERE = {
     "metavar": "R",
-    "help": "Of the sphere. [default: a quarter of the branch's median radius]",
+    "help": "Of the sphere. [default: a quarter of the median radius]",
     "show_default": False,
     "rich_help_panel": "Method",
 }
@@ -124,6 +130,36 @@ NormalsName = Annotated[
         rich_help_panel="Method",
     ),
 ]
+Heading = Annotated[
+    str | None,
+    typer.Option(
+        metavar="x,y,z",
+        help="Body: where --omega 1,0,0 rolls to at first. [default: up]",
+        show_default=False,
+        rich_help_panel="Method",
+    ),
+]
+AttitudeAtStart = Annotated[
+    str | None,
+    typer.Option(
+        "--start-attitude",
+        metavar="w,x,y,z",
+        help="Body: quaternion of the sphere at the start. [default: 1,0,0,0]",
+        show_default=False,
+        rich_help_panel="Method",
+    ),
+]
+MeetingName = Annotated[
+    OnMeeting,
+    typer.Option(
+        "--on-meeting", help="Body: what a second contact does: ends the run, or replaces the first.",
+        rich_help_panel="Method",
+    ),
+]  # fmt: skip
+TrustedName = Annotated[
+    Trusted,
+    typer.Option("--trusted", help="Body: the run ends where the surface is worth less.", rich_help_panel="Method"),
+]
 Rtol = Annotated[
     float,
     typer.Option(
@@ -161,7 +197,8 @@ def _direction(m: str) -> tuple[float, float, float] | FrameRule:
 def roll_settings(
     model: Models, side: Side, sphere: float | None, omega: str, duration: float | None, start: str, rtol: float,
     atol: float, *, velocity: str = VELOCITY, twist: Twist = ROLL.twist, rate: float = ROLL.rate,
-    start_at: str | None = None, normals: Normals = ROLL.normals,
+    start_at: str | None = None, normals: Normals = ROLL.normals, heading: str | None = None,
+    start_attitude: str | None = None, on_meeting: OnMeeting = ROLL.on_meeting, trusted: Trusted = ROLL.trusted,
 ) -> tuple[RollParams, ...]:  # fmt: skip
     """Return the settings of every run that a choice of model asks for."""
     u, v, us, vs, psi = numbers_of("--start", start, 5)
@@ -177,6 +214,10 @@ def roll_settings(
             rate=rate,
             start=(u, v, us, vs, psi),
             start_at=None if start_at is None else three("--start-at", start_at),
+            heading=None if heading is None else three("--heading", heading),
+            attitude=ROLL.attitude if start_attitude is None else four("--start-attitude", start_attitude),
+            on_meeting=on_meeting,
+            trusted=trusted,
             normals=normals if model != "both" or one == "global" else "surface",
             rtol=rtol,
             atol=atol,
@@ -199,6 +240,12 @@ def refuse_both(inputs: bool, omega: str, velocity: str) -> None:
         raise TiskelError(
             f"--inputs holds omega and velocity over time, {' and '.join(given)} would not count; drop one"
         )
+
+
+def four(option: str, value: str) -> tuple[float, float, float, float]:
+    """Return the four numbers of an option."""
+    w, x, y, z = numbers_of(option, value, 4)
+    return w, x, y, z
 
 
 def inputs_of(path: Path | None) -> "Inputs | None":

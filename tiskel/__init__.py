@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from tiskel.params import LbcParams as LbcParams
     from tiskel.params import MetricParams as MetricParams
     from tiskel.params import PipelineParams as PipelineParams
+    from tiskel.params import PlanParams as PlanParams
     from tiskel.params import RobustParams as RobustParams
     from tiskel.params import RollParams as RollParams
     from tiskel.params import ShapeParams as ShapeParams
@@ -64,7 +65,10 @@ if TYPE_CHECKING:
     from tiskel.rolling.bodies import BodyTrajectory as BodyTrajectory
     from tiskel.rolling.bodies import roll_body as roll_body
     from tiskel.rolling.inputs import Inputs as Inputs
+    from tiskel.rolling.plan import Plan as Plan
+    from tiskel.rolling.plan import plan_roll as plan_roll
     from tiskel.rolling.roll import roll as roll
+    from tiskel.rolling.roll_on import roll_on as roll_on
     from tiskel.rolling.trajectory import RollStatus as RollStatus
     from tiskel.rolling.trajectory import Trajectory as Trajectory
     from tiskel.skeleton import Skeleton as Skeleton
@@ -96,6 +100,8 @@ _HOME = {
     "MetricParams": "params",
     "PipelineParams": "params",
     "PipelineResult": "pipeline",
+    "Plan": "rolling.plan",
+    "PlanParams": "params",
     "Progress": "progress",
     "Quality": "metrics.result",
     "RadiusSource": "geometry.radius",
@@ -129,11 +135,13 @@ _HOME = {
     "load_curve": "io.curves",
     "make_shape": "gallery.make",
     "named_shape": "gallery.make",
+    "plan_roll": "rolling.plan",
     "read_contraction": "io.stages.contraction",
     "read_skeleton": "io.stages.skeleton",
     "read_surfaces": "io.stages.surface",
     "roll": "rolling.roll",
     "roll_body": "rolling.bodies",
+    "roll_on": "rolling.roll_on",
     "run_pipeline": "pipeline",
     "shape_graph": "gallery.make",
     "split_cloud": "io.split",

@@ -18,7 +18,7 @@ from tiskel.metrics.stability import Stability, assess_stability
 from tiskel.params import PipelineParams
 from tiskel.preprocess.conditioning import condition
 from tiskel.progress import Report
-from tiskel.rolling.roll import roll
+from tiskel.rolling.over import roll_over
 from tiskel.rolling.trajectory import Trajectory
 from tiskel.skeleton import Skeleton, extract_skeleton
 from tiskel.slicing.body import fit_whole
@@ -67,7 +67,7 @@ class PipelineResult:
     surfaces : Surfaces or None
         With that of the whole body; None where it could not be fitted, and then there are no trajectories.
     trajectories : tuple of Trajectory
-        The runs over the longest surface; empty where the sphere cannot roll there.
+        The runs over the body, or the longest surface of a branch; empty where the sphere cannot roll there.
     reason : str
         Why there are no surfaces or no trajectories; empty where there are both.
     seconds : dict
@@ -226,7 +226,7 @@ def _surfaces_and_runs(
         return None, (), reason
     runs, reason = record.attempt(
         "roll",
-        lambda: tuple(roll(surfaces.named(None), r, progress=progress) for r in params.roll),
+        lambda: tuple(roll_over(surfaces, r, progress=progress) for r in params.roll),
         messages.of_runs,
     )
     return surfaces, runs or (), reason

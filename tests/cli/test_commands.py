@@ -258,7 +258,7 @@ def test_wrong_values_and_wrong_usage(tiskel: Runner, cloud: Path) -> None:
         (("skeleton", "--format"), "ply obj swc graphml json"),
         (("metrics", "--bars"), "toolbox max"),
         (("slice", "--order-rule"), "cross-validated published"),
-        (("roll", "--model"), "global local both"),
+        (("roll", "--model"), "global local both body"),
         (("roll", "--side"), "outside inside"),
         (("roll", "--twist"), "object sphere world"),
         (("roll", "--normals"), "surface pca"),

@@ -13,6 +13,7 @@ import trimesh
 from reference.fixtures import Runner, one_error_line
 from tiskel import contract, extract_skeleton, make_shape, read_surfaces, shape_graph, write_skeleton
 from tiskel.io.stages.roll import COLUMNS
+from tiskel.io.stages.trajectories import read_poses
 from tiskel.params import ShapeParams
 
 
@@ -237,4 +238,89 @@ def test_run_slices_and_rolls_and_says_where_it_cannot(tiskel: Runner, tmp_path:
     assert b"no rolling: a sphere of radius 9" in too_large.stderr
     assert (tmp_path / "large" / "surface.json").exists()
     assert not (tmp_path / "large" / "path.csv").exists()
-    assert "fits nowhere" in (tmp_path / "large" / "report.html").read_text()
+    assert "cannot stand inside" in (tmp_path / "large" / "report.html").read_text()
+
+
+@pytest.fixture(scope="module")
+def whole(stage: bytes, tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The surface file of a bent rod, with the surface of the whole body."""
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "s.ply").write_bytes(stage)
+    from tiskel import read_skeleton, write_surfaces
+    from tiskel.params import SurfaceParams
+    from tiskel.slicing.body import fit_whole
+
+    write_surfaces(folder / "f.json", fit_whole(read_skeleton(folder / "s.ply"), SurfaceParams()), SurfaceParams())
+    return (folder / "f.json").read_bytes()
+
+
+@pytest.fixture
+def surface(whole: bytes, tmp_path: Path) -> Path:
+    (tmp_path / "f.json").write_bytes(whole)
+    return tmp_path / "f.json"
+
+
+def test_the_whole_body_is_rolled_over_and_exported(tiskel: Runner, surface: Path, tmp_path: Path) -> None:
+    """Past the end of the rod, where the model of a branch stops; the table drives another run to the same place."""
+    words = ("roll", "f.json", "--model", "body", "--omega", "1,0,0", "--duration", 3, "--rate", 20)
+    done = tiskel(*words, "-o", "r.csv", "--json", "--plot", "p.png", "--animate", "f.gif")
+    assert done.returncode == 0, done.stderr
+    said = json.loads(done.stdout)
+    assert (said["branch"], said["runs"][0]["model"], said["runs"][0]["status"]) == ("body", "body", "finished")
+    assert said["runs"][0]["start"][:2] == [None, None]
+    assert (tmp_path / "f.gif").read_bytes().startswith(b"GIF")
+    rows = table((tmp_path / "r.csv").read_bytes())
+    assert rows[0]["u_o"] == ""
+    assert float(rows[-1]["way_o"]) == pytest.approx(float(rows[-1]["way_s"]), rel=1e-5)
+    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
+    again = tiskel("roll", "f.json", "--model", "body", "--inputs", "r.csv", "--rate", 20, "-o", "r.tum")
+    assert again.returncode == 0, again.stderr
+    assert tiskel(*words, "-o", "r.yaml").returncode == 0
+    one, other = read_poses(tmp_path / "r.csv"), read_poses(tmp_path / "r.tum")
+    np.testing.assert_allclose(one.centre, other.centre, atol=1e-6)
+    np.testing.assert_allclose(np.abs((one.orientation * other.orientation).sum(axis=1)), 1, atol=1e-9)
+    path = (tmp_path / "r.yaml").read_text()
+    assert path.count("  pose: {position: {x: ") == len(rows)
+    assert "stamp: {sec: 0, nanosec: 50000000}" in path
+    both = tiskel("roll", "f.json", "--model", "both", "--duration", 1, "-o", "b.tum")
+    assert "holds one run" in one_error_line(both)
+
+
+def test_a_plan_is_rolled_to_where_it_should_come(tiskel: Runner, surface: Path, tmp_path: Path) -> None:
+    cloud = read_surfaces(surface).cloud
+    start, goal = (",".join(map(str, cloud[row])) for row in (np.argmin(cloud[:, 0]), np.argmax(cloud[:, 2])))
+    words = ("plan", "f.json", f"--from={start}", f"--to={goal}", "--json", "--path", "run.tum", "-o", "w.csv")
+    done = tiskel(*words)
+    assert done.returncode == 0, done.stderr
+    said = json.loads(done.stdout)
+    assert said["off"] < 1e-3
+    command = done.stderr.decode().split("roll it with: ")[1].split("\n")[0].split()
+    rolled = tiskel("roll", "f.json", *command, "w.csv", "--json")
+    assert rolled.returncode == 0, rolled.stderr
+    run = json.loads(rolled.stdout)["runs"][0]
+    np.testing.assert_allclose(run["end_at"], said["end_at"], atol=2e-3 * run["radius"])
+    assert len(read_poses(tmp_path / "run.tum").t) == 1 + round(said["time"] * 100)
+    far = tiskel("plan", "f.json", f"--from={start}", "--to=9,9,9")
+    assert "from the surface" in one_error_line(far)
+    blocked = tiskel("plan", "f.json", f"--from={start}", f"--to={goal}", f"--avoid={goal},0.1")
+    assert "cannot stand at the goal" in one_error_line(blocked)
+
+
+def test_other_bodies_than_a_sphere(tiskel: Runner, surface: Path, tmp_path: Path) -> None:
+    words = ("roll", "f.json", "--omega", "0.3,0.5,0", "--duration", 1, "--rate", 10)
+    for body in ("ellipsoid:0.05,0.06,0.04", "cylinder:0.05,0.4", "f.json"):
+        done = tiskel(*words, "--body", body)
+        assert done.returncode == 0, done.stderr
+        rows = table(done.stdout)
+        assert len(rows) > 1
+        assert float(rows[0]["margin"]) > 0
+    said = json.loads(tiskel(*words, "--body", "ellipsoid:0.05,0.06,0.04", "--json").stdout)
+    assert said["body"] == "ellipsoid:0.05,0.06,0.04"
+    for more, wrong in (
+        (("--body", "ellipsoid:1,2"), "needs 3 numbers"),
+        (("--body", "cylinder:1,0"), "needs positive sizes"),
+        (("--body", "cylinder:1,1", "--model", "body"), "leave out --model body"),
+        (("--model", "body", "--branch", "0"), "knows no branches"),
+        (("--model", "body", "--heading", "1,2"), "--heading needs 3 numbers"),
+    ):
+        assert wrong in one_error_line(tiskel(*words, *more))

@@ -31,6 +31,7 @@ from tiskel.params.methods import (
 )
 from tiskel.params.metrics import Bars, BetaRule, MetricParams
 from tiskel.params.pipeline import PipelineParams
+from tiskel.params.plan import PlanParams as PlanParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
 from tiskel.params.shape import ShapeParams
 from tiskel.params.skeleton import SkeletonParams

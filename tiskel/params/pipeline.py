@@ -12,9 +12,9 @@ from tiskel.params.stability import StabilityParams
 from tiskel.params.surface import SurfaceParams
 
 
-def both_models() -> tuple[RollParams, ...]:
-    """Return the settings of a run in each of the two models."""
-    return RollParams(model="global"), RollParams(model="local")
+def over_the_body() -> tuple[RollParams, ...]:
+    """Return the settings of a run over the whole body."""
+    return (RollParams(model="body"),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +28,7 @@ class PipelineParams:
     >>> from tiskel import LbcParams, PipelineParams
     >>> params = PipelineParams(contraction=LbcParams(max_steps=5))
     >>> params.contraction.max_steps, params.surface.branch, [run.model for run in params.roll]
-    (5, 'all', ['global', 'local'])
+    (5, 'all', ['body'])
     """
 
     conditioning: ConditioningParams = field(default_factory=ConditioningParams)
@@ -38,7 +38,9 @@ class PipelineParams:
     stability: StabilityParams = field(default_factory=StabilityParams)
     surface: SurfaceParams = field(default_factory=SurfaceParams)
     body: BodyParams = field(default_factory=BodyParams)  #: the surface of the whole body
-    roll: tuple[RollParams, ...] = field(default_factory=both_models)  #: one run each, over the longest surface
+    roll: tuple[RollParams, ...] = field(
+        default_factory=over_the_body
+    )  #: one run each; on a branch, over the longest surface
 
     def __post_init__(self) -> None:
         self.skeleton.over(self.contraction)

@@ -7,10 +7,12 @@ from typing import Literal, get_args
 from tiskel.errors import TiskelError
 from tiskel.params.checks import among, at_least, finite
 
-Model = Literal["global", "local"]
+Model = Literal["global", "local", "body"]
 Side = Literal["outside", "inside"]
 Twist = Literal["object", "sphere", "world"]
 Normals = Literal["surface", "pca"]
+OnMeeting = Literal["stop", "follow"]
+Trusted = Literal["any", "seen", "measured"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +38,7 @@ class RollParams:
     rate must be a positive number, got 0
     """
 
-    model: Model = "global"  #: on the surface as it is; "local": on one made straight along its skeleton
+    model: Model = "global"  #: on the surface as it is; "local": made straight along its skeleton; "body": no chart
     side: Side = "outside"  #: of the surface that the sphere rolls on
     radius: float | None = None  #: of the sphere; None: a quarter of the median radius of the surface
     omega: tuple[float, float, float] = (0.0, 1.0, 0.0)  #: angular velocity, radians per second
@@ -46,6 +48,10 @@ class RollParams:
     rate: float = 100.0  #: rows of the trajectory per second
     start: tuple[float, float, float, float, float] = (0.1, pi / 2, 0.1, 0.1, pi / 2)  #: u_o, v_o, u_s, v_s, psi [T]
     start_at: tuple[float, float, float] | None = None  #: instead of u_o and v_o: the surface's point nearest to it
+    attitude: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)  #: body: the sphere's quaternion at the start
+    heading: tuple[float, float, float] | None = None  #: body: where omega_x = 1 rolls to at first; None: up
+    on_meeting: OnMeeting = "stop"  #: body: what a second contact does; "follow": it takes the place of the first
+    trusted: Trusted = "any"  #: body: the least that the surface has to be worth, or the run ends
     normals: Normals = "surface"  #: where curvature comes from; "pca": normals of neighbours, as printed, to compare
     neighbours: int = 20  #: of these normals [T]
     meet: bool = True  #: the run ends where the sphere meets another part of the cloud
@@ -57,13 +63,24 @@ class RollParams:
         among("side", self.side, get_args(Side))
         among("twist", self.twist, get_args(Twist))
         among("normals", self.normals, get_args(Normals))
+        among("on_meeting", self.on_meeting, get_args(OnMeeting))
+        among("trusted", self.trusted, get_args(Trusted))
         at_least("neighbours", self.neighbours, 6)
-        for name, count in (("omega", 3), ("velocity", 3), ("start", 5), ("start_at", 3)):
+        for name, count in (
+            ("omega", 3),
+            ("velocity", 3),
+            ("start", 5),
+            ("start_at", 3),
+            ("attitude", 4),
+            ("heading", 3),
+        ):
             finite(name, getattr(self, name), count)
         for name in ("radius", "duration", "rate", "rtol", "atol"):
             value = getattr(self, name)
             if value is not None and not 0 < value < inf:
                 raise TiskelError(f"{name} must be a positive number, got {value}")
+        if not any(self.attitude) or self.heading == (0, 0, 0):
+            raise TiskelError(f"attitude and heading need a length, got {self.attitude} and {self.heading}")
         if self.model == "local" and self.normals == "pca":
             raise TiskelError('the local model has its curvature from the Fourier series; take normals "surface"')
         if self.twist == "object" and self.velocity[2] != 0:

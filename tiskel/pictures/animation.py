@@ -13,19 +13,23 @@ from tiskel.pictures.canvas import CLOUD, CURVE, INK, broad_view, new_figure
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
 from tiskel.slicing.fitted import FittedSurface
+from tiskel.surfaces.patches import BodySurface
 
 FORMATS = ("gif", "html")
 FRAMES, SECONDS, SIZE, DPI = 90, 9.0, 5.0, 80  # of a GIF; inches
 SHOWN_POINTS, PAGE_POINTS = 6000, 8000
+ONE_SIDED = 0.2  # length of the mean normal of a run: with less it is all around, and the broad view will do
+ROOM, SHARE = 5.0, 16.0  # radii of the sphere around its way, and across the picture at least
+DEPTHS, BALL = "bone_r", "#f2a65a"  # far points are pale
 MERIDIANS, PARALLELS, DOTS = 6, 3, 48  # what is drawn on the sphere, so that its turning shows
 
 
-def animation(surface: FittedSurface, run: Trajectory, kind: str) -> bytes:
+def animation(surface: FittedSurface | BodySurface, run: Trajectory, kind: str) -> bytes:
     """Return a film of a run.
 
     Parameters
     ----------
-    surface : FittedSurface
+    surface : FittedSurface or BodySurface
         What the sphere rolls over; its cloud is drawn.
     run : Trajectory
         The run.
@@ -56,7 +60,7 @@ def sphere_lines() -> list[Points]:
     return lines + [np.stack([np.cos(h) * c, np.cos(h) * s, np.sin(h) + zero], axis=1) for h in heights]
 
 
-def _gif(surface: FittedSurface, run: Trajectory) -> bytes:
+def _gif(surface: FittedSurface | BodySurface, run: Trajectory) -> bytes:
     from PIL import Image
 
     frames = [
@@ -68,24 +72,29 @@ def _gif(surface: FittedSurface, run: Trajectory) -> bytes:
     return out.getvalue()
 
 
-def _frames(surface: FittedSurface, run: Trajectory) -> list[bytes]:
-    """Return pictures as PNG."""
+def _frames(surface: FittedSurface | BodySurface, run: Trajectory) -> list[bytes]:
+    """Return pictures as PNG: seen from where the sphere is in front, and near enough that it is a ball, not a dot."""
     figure = new_figure(SIZE, SIZE)
     panel = figure.add_subplot()
     cloud = body_of(surface.cloud)
-    axes = broad_view(cloud)
-    view = np.concatenate([axes, np.cross(*axes)[None]])
-    shown = cloud[:: max(1, len(cloud) // SHOWN_POINTS)] @ view.T
-    every = np.concatenate([shown[:, :2], run.centre @ view[:2].T - run.radius, run.centre @ view[:2].T + run.radius])
+    view = seen_from(cloud, run)
+    low, high = window(cloud, run, view)
+    flat = cloud @ view.T
+    flat = flat[((flat[:, :2] >= low) & (flat[:, :2] <= high)).all(axis=1)]
+    shown = flat[:: max(1, len(flat) // SHOWN_POINTS)]
+    pale = 1.4 * shown[:, 2].min() - 0.4 * shown[:, 2].max()
     rows = np.unique(np.linspace(0, len(run.t) - 1, min(FRAMES, len(run.t))).astype(int))
     pictures = []
     for row in rows:
         panel.clear()
-        panel.scatter(*shown[:, :2].T, s=1.5, c=CLOUD, linewidths=0)
+        centre = view @ run.centre[row]
+        hiding = (shown[:, 2] > centre[2]) & (np.linalg.norm(shown[:, :2] - centre[:2], axis=1) < run.radius)
+        panel.scatter(*shown[:, :2].T, s=2.5, c=shown[:, 2], cmap=DEPTHS, vmin=pale, linewidths=0)
         panel.plot(*(run.contact[: row + 1] @ view[:2].T).T, color=CURVE, linewidth=1.2)
         _ball(panel, run, int(row), view)
-        panel.set_xlim(every[:, 0].min(), every[:, 0].max())
-        panel.set_ylim(every[:, 1].min(), every[:, 1].max())
+        panel.scatter(*shown[hiding, :2].T, s=2.5, c=CLOUD, linewidths=0, zorder=5)  # what is before it
+        panel.set_xlim(low[0], high[0])
+        panel.set_ylim(low[1], high[1])
         panel.set_aspect("equal")
         panel.set_axis_off()
         panel.set_title(f"t = {run.t[row]:.2f} s", fontsize=9)
@@ -95,23 +104,49 @@ def _frames(surface: FittedSurface, run: Trajectory) -> list[bytes]:
     return pictures
 
 
+def seen_from(cloud: Points, run: Trajectory) -> Numbers:
+    """Return three axes (3, 3), across, up and to the eye: the eye is on the side on which most of the run is."""
+    axes = broad_view(cloud)
+    view = np.concatenate([axes, np.cross(*axes)[None]])
+    ahead = run.normal.mean(axis=0) * (1.0 if run.params.side == "outside" else -1.0)
+    if np.linalg.norm(ahead) < ONE_SIDED:
+        return view
+    ahead = ahead / np.linalg.norm(ahead)
+    up = axes[int(np.argmin(np.abs(axes @ ahead)))]
+    up = up - ahead * (up @ ahead)
+    up = up / np.linalg.norm(up)
+    return np.stack([np.cross(up, ahead), up, ahead])
+
+
+def window(cloud: Points, run: Trajectory, view: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the least and largest coordinates (2,) of the picture: the run and some room, and no more than all."""
+    way, whole = run.centre @ view[:2].T, cloud @ view[:2].T
+    room = ROOM * run.radius
+    low, high = way.min(axis=0) - room, way.max(axis=0) + room
+    middle, half = (low + high) / 2, max(float((high - low).max()), SHARE * run.radius) / 2
+    every = np.concatenate([whole, way - 2 * run.radius, way + 2 * run.radius])
+    half = min(half, float(np.ptp(every, axis=0).max()) / 2)
+    return middle - half, middle + half
+
+
 def _ball(panel: Any, run: Trajectory, row: int, view: Numbers) -> None:
     """Draw the sphere's rim, and the near half of its lines."""
     turn = np.linspace(0, 2 * np.pi, 73)
     centre = run.centre[row] @ view.T
-    panel.fill(
-        *(centre[:2] + run.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)).T, color="#f6ddcc", alpha=0.6
-    )
+    rim = centre[:2] + run.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    panel.fill(*rim.T, facecolor=BALL, edgecolor=INK, linewidth=0.8, zorder=3)
     rotation = rotation_of(run.orientation[row])
     for line in sphere_lines():
         placed = run.radius * line @ rotation.T @ view.T
         near = np.where(placed[:, 2:] >= 0, placed[:, :2], np.nan)
-        panel.plot(*(centre[:2] + near).T, color=INK, linewidth=0.7)
+        panel.plot(*(centre[:2] + near).T, color=INK, linewidth=0.7, zorder=4)
 
 
-def _page(surface: FittedSurface, run: Trajectory) -> bytes:
+def _page(surface: FittedSurface | BodySurface, run: Trajectory) -> bytes:
     rows = np.unique(np.linspace(0, len(run.t) - 1, min(600, len(run.t))).astype(int))
     cloud = body_of(surface.cloud)
+    middle = (run.centre.min(axis=0) + run.centre.max(axis=0)) / 2
+    reach = max(float(np.linalg.norm(run.centre - middle, axis=1).max()) + ROOM * run.radius, SHARE / 2 * run.radius)
     data = {
         "cloud": cloud[:: max(1, len(cloud) // PAGE_POINTS)].round(6).tolist(),
         "t": run.t[rows].tolist(),
@@ -119,6 +154,8 @@ def _page(surface: FittedSurface, run: Trajectory) -> bytes:
         "centre": run.centre[rows].tolist(),
         "rotation": rotation_of(run.orientation[rows]).reshape(-1, 9).tolist(),
         "radius": run.radius,
+        "middle": middle.tolist(),
+        "reach": min(reach, float(np.linalg.norm(cloud - middle, axis=1).max())),
         "lines": [line.round(4).tolist() for line in sphere_lines()],
     }
     return PAGE.replace("DATA", json.dumps(data, allow_nan=False)).encode()
@@ -137,8 +174,7 @@ drag to turn, wheel to zoom</div>
 const d = DATA;
 const c = document.getElementById('c'), g = c.getContext('2d'), bar = document.getElementById('time');
 bar.max = d.t.length - 1;
-const mid = [0, 1, 2].map(k => { const x = d.cloud.map(p => p[k]); return (Math.min(...x) + Math.max(...x)) / 2; });
-const size = Math.max(...d.cloud.map(p => Math.hypot(p[0] - mid[0], p[1] - mid[1], p[2] - mid[2])));
+const mid = d.middle, size = d.reach;
 let a = 0.6, b = 0.4, zoom = 0.85, row = 0, on = true;
 function seen(p) {
   const x = p[0] - mid[0], y = p[1] - mid[1], z = p[2] - mid[2];
@@ -161,7 +197,7 @@ function draw() {
   for (const p of d.cloud) { const q = seen(p); g.fillRect(q[0], q[1], 1.5, 1.5); }
   g.lineWidth = 2; path(d.contact.slice(0, row + 1), '#c0392b');
   const m = d.centre[row], q = seen(m), r = d.rotation[row];
-  g.fillStyle = 'rgba(246, 221, 204, 0.6)'; g.beginPath(); g.arc(q[0], q[1], q[3] * d.radius, 0, 7); g.fill();
+  g.fillStyle = 'rgba(242, 166, 90, 0.9)'; g.beginPath(); g.arc(q[0], q[1], q[3] * d.radius, 0, 7); g.fill();
   g.lineWidth = 1;
   for (const line of d.lines) path(line.map(p => [0, 1, 2].map(k =>
     m[k] + d.radius * (r[3 * k] * p[0] + r[3 * k + 1] * p[1] + r[3 * k + 2] * p[2]))), '#1f3a5f', q[2]);

@@ -12,6 +12,7 @@ from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, 
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
 from tiskel.slicing.fitted import FittedSurface
+from tiskel.surfaces.patches import BodySurface
 from tiskel.surfaces.tube import V_STOP
 
 COLOURS, STYLES = (CURVE, POINTS), ("-", "--")  # of the first and the second run
@@ -21,13 +22,13 @@ TURN = np.linspace(0, 2 * np.pi, 73)
 
 
 def rolling_picture(
-    surface: FittedSurface, runs: Sequence[Trajectory], title: str, kind: str = "png"
+    surface: FittedSurface | BodySurface, runs: Sequence[Trajectory], title: str, kind: str = "png"
 ) -> bytes:  # fmt: skip
     """Return a picture of one or two runs: ways over object and sphere, R_o, and the five states over time.
 
     Parameters
     ----------
-    surface : FittedSurface
+    surface : FittedSurface or BodySurface
         What the sphere rolls over; its cloud is drawn.
     runs : sequence of Trajectory
         One or two runs, a colour each.
@@ -46,26 +47,37 @@ def rolling_picture(
     _over(over, surface, runs)
     _on_sphere(ball, runs)
     _against_time(radius, runs, [r.object_radius for r in runs], "R_o at the contact", surface.radius)
-    for i, name in enumerate(STATES):
+    for i, (heading, values) in enumerate(_states(runs)):
         panel = figure.add_subplot(grid[1, 3 * i : 3 * i + 3])
-        _against_time(panel, runs, [r.state[:, i] for r in runs], f"{name}, radians", 1.0)
+        _against_time(panel, runs, values, heading, 1.0)
+    where = f"branch {surface.name}" if isinstance(surface, FittedSurface) else "the whole body"
     said = "; ".join(f"{_name(r)}: {r.status.value}" for r in runs)
-    figure.suptitle(f"{title}, branch {surface.name}. {said}", fontsize=10)
+    figure.suptitle(f"{title}, {where}. {said}", fontsize=10)
     return rendered(figure, kind)
+
+
+def _states(runs: Sequence[Trajectory]) -> list[tuple[str, list[Numbers]]]:
+    """Return headings and values over time: the five states; without a chart room and way in place of u_o and v_o."""
+    named = [(f"{name}, radians", [r.state[:, i] for r in runs]) for i, name in enumerate(STATES)]
+    if np.isfinite(runs[0].state).all():
+        return named
+    room = [r.margin * r.radius for r in runs]
+    return [("margin, 1 on a plane", room), ("way, radii", [r.ways[:, 0] / r.radius for r in runs]), *named[2:]]
 
 
 def _name(r: Trajectory) -> str:
     return r.params.model + (", normals of neighbours" if r.params.normals == "pca" else "")
 
 
-def _over(panel: Any, surface: FittedSurface, runs: Sequence[Trajectory]) -> None:
+def _over(panel: Any, surface: FittedSurface | BodySurface, runs: Sequence[Trajectory]) -> None:
     """Draw the cloud, a net of the surface, the ways of the contact, and the sphere where it ended."""
     cloud = body_of(surface.cloud)
     view = broad_view(cloud)
     cloud_panel(panel, cloud, view)
-    for place in np.linspace(0, V_STOP, 24):
-        ring = np.stack(surface.jet(TURN, np.full(len(TURN), place)).f, axis=1)
-        panel.plot(*(ring @ view.T).T, color=INK, linewidth=0.25)
+    if isinstance(surface, FittedSurface):
+        for place in np.linspace(0, V_STOP, 24):
+            ring = np.stack(surface.jet(TURN, np.full(len(TURN), place)).f, axis=1)
+            panel.plot(*(ring @ view.T).T, color=INK, linewidth=0.25)
     for r, colour, style in zip(runs, COLOURS, STYLES, strict=False):
         panel.plot(*(r.contact @ view.T).T, style, color=colour, linewidth=1.6, label=_name(r))
         rim = r.centre[-1] @ view.T + r.radius * np.stack([np.cos(TURN), np.sin(TURN)], axis=1)

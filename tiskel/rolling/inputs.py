@@ -69,6 +69,10 @@ class Inputs:
             w = ((1 - share) * self.values[after - 1] + share * self.values[after]).tolist()
         return (w[0], w[1], w[2]), (w[3], w[4], w[5])
 
+    def over(self, t: Numbers) -> Table:
+        """Return omega and V (n, 6) at times (n,)."""
+        return np.column_stack([np.interp(t, self.t, column) for column in self.values.T])
+
     @property
     def slips(self) -> bool:
         """Whether there is a slip velocity at any time."""

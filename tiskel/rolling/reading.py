@@ -36,6 +36,7 @@ def read(
         "state": np.stack([u, v, u_s, v_s, psi], axis=1),
         "contact": contact,
         "centre": contact + radius * up,
+        "normal": up,
         "orientation": quaternions_of(frames_of(forms) @ seen),
         "object_radius": np.full(len(u), np.nan) if tube is None else np.asarray(tube.at(u, v)[1].R),
         "margin": np.asarray(margin(own, radius)),
@@ -43,20 +44,23 @@ def read(
     }
 
 
-def path_lengths(model: RollingModel, radius: float, solution: Solution) -> tuple[float, float]:
-    """Return how long the contact's ways over the object and over the sphere are, from places along them.
+def ways_of(model: RollingModel, radius: float, solution: Solution) -> Table:
+    """Return (n, 2) how far the contact has come over the object and the sphere at every row, from places along both.
 
     They are two measurements of one length where there is no slip: the first
     integrates the metric of the surface along u and v, the second adds up arcs
     between the places (n, 3) on the sphere that the quaternions say.
     """
-    y = solution.at(fine_times(solution.steps)).T
+    fine = fine_times(solution.steps)
+    y = solution.at(fine).T
     (m11, m12), (_, m22) = model.forms(*((y[1:, :2] + y[:-1, :2]) / 2).T).M
     du, dv = np.diff(y[:, :2], axis=0).T
     on_sphere = -rotation_of(y[:, 2:])[:, 2]  # Q^T (-z_o)
     chords = step_lengths(on_sphere)
     arcs = 2 * radius * np.arcsin(np.minimum(chords / 2, 1))
-    return float(np.hypot(m11 * du + m12 * dv, m22 * dv).sum()), float(arcs.sum())
+    steps = np.column_stack([np.hypot(m11 * du + m12 * dv, m22 * dv), arcs])
+    reached = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+    return np.column_stack([np.interp(solution.t, fine, column) for column in reached.T])
 
 
 def fine_times(steps: Numbers) -> Numbers:

@@ -13,10 +13,10 @@ from tiskel.rolling.endings import Ending, endings
 from tiskel.rolling.equations import frame_turn, margin
 from tiskel.rolling.inputs import Inputs, constant, of_the_object
 from tiskel.rolling.models import RollingModel, model_of, tube_of
-from tiskel.rolling.reading import path_lengths, read
+from tiskel.rolling.reading import read, ways_of
 from tiskel.rolling.solution import duration_of, solve
 from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate, rotation_of
-from tiskel.rolling.trajectory import RollStatus, Trajectory
+from tiskel.rolling.trajectory import RollStatus, Trajectory, told_inputs, told_slip
 from tiskel.slicing.fitted import FittedSurface
 from tiskel.surfaces.forms import forms_of
 from tiskel.surfaces.jets import ParametricSurface
@@ -24,8 +24,6 @@ from tiskel.surfaces.nearest import even_places, nearest_place
 from tiskel.surfaces.tube import V_STOP
 
 USUAL_RADIUS = 0.25  # of the surface's median radius
-SLIPLESS = 1e-3  # of a way: without slip the two ways are not farther apart
-STANDING = 1e-6  # of the sphere's radius: shorter ways are rounding
 GRID = 72, 200  # places around and along where a sphere that does not fit is tried
 COARSE = 16, 32  # and where one that meets points is
 FAR = 1.0  # radii of the body, or of the sphere: places to start at that are farther from the surface are none of it
@@ -79,6 +77,8 @@ def roll(
     span = Span(progress, "roll")
     span.at(0, "start")
     params, inputs = params or RollParams(), inputs or constant(params or RollParams())
+    if params.model == "body":
+        raise TiskelError("model 'body' rolls over the surface of a whole body; give that one to roll_on")
     radius = params.radius or USUAL_RADIUS * median_radius(surface)
     model = model_of(surface, params, radius)
     watched = endings(surface, model, params, radius)
@@ -87,13 +87,14 @@ def roll(
     rate = _Rate(model, params, inputs)
     told = rate if progress is None else _told(rate, duration_of(params, inputs), span)
     solution = solve(told, start, params, inputs, radius, watched)
-    lengths = path_lengths(model, radius, solution)
+    ways = ways_of(model, radius, solution)
+    lengths = float(ways[-1, 0]), float(ways[-1, 1])
     span.at(1)
     return Trajectory(
         solution.t, **read(surface, model, params.sigma, radius, solution.states, params.start[4]),
         path_object=lengths[0], path_sphere=lengths[1], status=solution.status, reason=solution.reason,
-        evaluations=solution.evaluations, radius=radius, params=params,
-        warnings=far + _warnings(inputs, lengths, radius, params),
+        evaluations=solution.evaluations, radius=radius, params=params, inputs=inputs.over(solution.t), ways=ways,
+        warnings=(*far, *told_inputs(inputs), *told_slip(inputs, lengths, radius, params)),
     )  # fmt: skip
 
 
@@ -198,19 +199,3 @@ def _elsewhere(surface: ParametricSurface, params: RollParams, radius: float) ->
         return f"it fits nowhere, a sphere of less than {largest:.4g} somewhere"
     best = np.unravel_index(int(np.argmax(free)), free.shape)
     return f"start at u = {u[best]:.4g}, v = {v[best]:.4g}, or take a smaller one"
-
-
-def _warnings(inputs: Inputs, lengths: tuple[float, float], radius: float, params: RollParams) -> tuple[str, ...]:
-    """Return those of the inputs, and what a user should know of the run."""
-    found = list(inputs.warnings)
-    if not inputs.values.any():
-        found.append("the inputs are zero: the sphere stays where it is")
-    longer = max(lengths)
-    apart = abs(lengths[0] - lengths[1])
-    if not inputs.slips and longer > STANDING * radius and apart > SLIPLESS * longer:
-        found.append(
-            f"the contact's way is {lengths[0]:.6g} over the surface and {lengths[1]:.6g} over the sphere, "
-            f"{100 * apart / longer:.2g} % apart though there is no slip; take a smaller rtol than {params.rtol:g} "
-            f"and a smaller atol than {params.atol:g} (--rtol, --atol)"
-        )
-    return tuple(found)

@@ -8,6 +8,10 @@ import numpy as np
 
 from tiskel.arrays import Numbers, Points, Table
 from tiskel.params import RollParams
+from tiskel.rolling.inputs import Inputs
+
+SLIPLESS = 1e-3  # of a way: without slip the two ways are not farther apart
+STANDING = 1e-6  # of the sphere's radius: shorter ways are rounding
 
 
 class RollStatus(str, Enum):
@@ -33,6 +37,10 @@ class RollStatus(str, Enum):
         The contact came to a pole of a chart, where u and v are no coordinates; of two bodies alone.
     STUCK
         The solver found no step small enough, as at the pole of a chart.
+    ENDED
+        Nothing is known of the surface further on.
+    DOUBTFUL
+        The surface is worth less there than was asked for.
 
     Examples
     --------
@@ -54,6 +62,8 @@ class RollStatus(str, Enum):
     OFF = "the surface is off the cloud"
     POLE = "a pole of the chart"
     STUCK = "the solver gave up"
+    ENDED = "the surface ends"
+    DOUBTFUL = "the surface is not trusted"
 
 
 @dataclass(frozen=True)
@@ -65,7 +75,8 @@ class Trajectory:
     t : (n,) array
         Times, evenly ``params.rate`` per second; the last is where the run ended.
     state : (n, 5) array
-        u_o and v_o on the object, u_s and v_s on the sphere, psi between the frames, without jumps of a turn.
+        u_o and v_o on the object, u_s and v_s on the sphere, psi between the frames, without jumps of a turn; u_o and
+        v_o are NaN on surfaces without a chart.
     contact : (n, 3) array
         Where sphere and object touch.
     centre : (n, 3) array
@@ -73,7 +84,7 @@ class Trajectory:
     orientation : (n, 4) array
         Unit quaternions w, x, y, z of the sphere, without jumps of sign.
     object_radius : (n,) array
-        R at the contact; NaN on surfaces without a skeleton.
+        R at the contact, on surfaces without a chart how thick the body is; NaN where neither is known.
     margin : (n,) array
         lambda_min(K_o) + 1/R_s, in 1 / length: the sphere fits while it is positive.
     determinant : (n,) array
@@ -92,6 +103,12 @@ class Trajectory:
         Of the sphere.
     params : RollParams
         The settings of the run.
+    normal : (n, 3) array
+        From the material to the sphere, of unit length.
+    inputs : (n, 6) array
+        omega and V as they were given, rad/s and lengths per second.
+    ways : (n, 2) array
+        How far the contact has come over the object and over the sphere.
     warnings : tuple of str
         What a user should know: of the inputs, and of slip that nobody asked for.
 
@@ -123,6 +140,9 @@ class Trajectory:
     evaluations: int
     radius: float
     params: RollParams
+    normal: Points
+    inputs: Table
+    ways: Table
     warnings: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
@@ -138,8 +158,10 @@ class Trajectory:
             "radius": self.radius,
             "rtol": p.rtol,
             "atol": p.atol,
-            "start": self.state[0].tolist(),
-            "end": self.state[-1].tolist(),
+            "start": _finite(self.state[0]),
+            "end": _finite(self.state[-1]),
+            "start_at": self.contact[0].tolist(),
+            "end_at": self.contact[-1].tolist(),
             "time": float(self.t[-1]),
             "rows": len(self.t),
             "path_object": self.path_object,
@@ -150,3 +172,26 @@ class Trajectory:
             "evaluations": self.evaluations,
             "warnings": list(self.warnings),
         }
+
+
+def _finite(values: Numbers) -> list[float | None]:
+    """Return values as JSON has them: None where there is none."""
+    return [value if np.isfinite(value) else None for value in values.tolist()]
+
+
+def told_inputs(inputs: Inputs) -> tuple[str, ...]:
+    """Return the warnings of inputs, and that they are zero."""
+    still = () if inputs.values.any() else ("the inputs are zero: the sphere stays where it is",)
+    return (*inputs.warnings, *still)
+
+
+def told_slip(inputs: Inputs, lengths: tuple[float, float], radius: float, params: RollParams) -> tuple[str, ...]:
+    """Return a warning where the two ways differ though there is no slip."""
+    longer, apart = max(lengths), abs(lengths[0] - lengths[1])
+    if inputs.slips or not longer > STANDING * radius or not apart > SLIPLESS * longer:
+        return ()
+    return (
+        f"the contact's way is {lengths[0]:.6g} over the surface and {lengths[1]:.6g} over the sphere, "
+        f"{100 * apart / longer:.2g} % apart though there is no slip; take a smaller rtol than {params.rtol:g} "
+        f"and a smaller atol than {params.atol:g} (--rtol, --atol)",
+    )

@@ -52,6 +52,35 @@ class EllipticCylinder:
         return Jet((v, a * c, b * s), around, (1 + zero, zero, zero), (zero, -a * c, -b * s), none, none)
 
 
+@dataclass(frozen=True)
+class Rod:
+    """A round cylinder about the first axis that ends at half its length either way.
+
+    Attributes
+    ----------
+    radius : float
+        Around the axis.
+    length : float
+        Along it.
+
+    Examples
+    --------
+    >>> Rod(2.0, 3.0).v_range
+    (-1.5, 1.5)
+    """
+
+    radius: float
+    length: float
+    periods: Periods = (2 * pi, None)
+
+    @property
+    def v_range(self) -> tuple[float, float]:
+        return -self.length / 2, self.length / 2
+
+    def jet(self, u: Scalar, v: Scalar) -> Jet:
+        return cylinder(self.radius).jet(u, v)
+
+
 def cylinder(radius: float) -> EllipticCylinder:
     """Return the round cylinder about the first axis."""
     return EllipticCylinder(radius, radius)

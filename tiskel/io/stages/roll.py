@@ -14,9 +14,10 @@ from tiskel.rolling.trajectory import Trajectory
 
 INPUTS = ("t", "wx", "wy", "wz", "vx", "vy", "vz")
 NEEDED = INPUTS[:4]
-COLUMNS = (  # seconds, radians, the cloud's unit of length; margin in 1 / length, determinant in 1 / length^2
+COLUMNS = (  # seconds, radians, the cloud's unit of length; margin in 1 / length, det in 1 / length^2; inputs as given
     "model", "t", "u_o", "v_o", "u_s", "v_s", "psi", "contact_x", "contact_y", "contact_z", "centre_x", "centre_y",
-    "centre_z", "q_w", "q_x", "q_y", "q_z", "R_o", "margin", "det_Q",
+    "centre_z", "q_w", "q_x", "q_y", "q_z", "R_o", "margin", "det_Q", "normal_x", "normal_y", "normal_z", "wx", "wy",
+    "wz", "vx", "vy", "vz", "way_o", "way_s",
 )  # fmt: skip
 
 
@@ -83,6 +84,15 @@ def _numbers(name: str, number: int, row: list[str], header: list[str]) -> list[
     return values
 
 
+def inputs_csv(inputs: Inputs) -> bytes:
+    """Return inputs over time as :func:`read_inputs` reads them, to the last bit."""
+    out = io.StringIO()
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow(INPUTS)
+    table.writerows([map(repr, row) for row in np.column_stack([inputs.t, inputs.values]).tolist()])
+    return out.getvalue().encode()
+
+
 def to_csv(trajectories: Sequence[Trajectory]) -> bytes:
     """Return one table of all trajectories as CSV: a row for every time, each named by its model."""
     out = io.StringIO()
@@ -91,6 +101,7 @@ def to_csv(trajectories: Sequence[Trajectory]) -> bytes:
     for r in trajectories:
         parts = [r.t[:, None], r.state, r.contact, r.centre, r.orientation]
         parts += [column[:, None] for column in (r.object_radius, r.margin, r.determinant)]
+        parts += [r.normal, r.inputs, r.ways]
         name = r.params.model if r.params.normals == "surface" else f"{r.params.model}-{r.params.normals}"
         for row in np.concatenate(parts, axis=1).tolist():
             table.writerow([name, *("" if value != value else repr(value) for value in row)])  # noqa: PLR0124
