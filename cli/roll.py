@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tiskel import messages
+from tiskel.cli import body_options as bo
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
@@ -58,10 +59,10 @@ def roll(
     start: so.Start = so.START,
     start_at: so.StartAt = None,
     normals: so.NormalsName = so.ROLL.normals,
-    heading: so.Heading = None,
-    start_attitude: so.AttitudeAtStart = None,
-    on_meeting: so.MeetingName = so.ROLL.on_meeting,
-    trusted: so.TrustedName = so.ROLL.trusted,
+    heading: bo.Heading = None,
+    start_attitude: bo.AttitudeAtStart = None,
+    on_meeting: bo.MeetingName = so.ROLL.on_meeting,
+    trusted: bo.TrustedName = so.ROLL.trusted,
     body: Body = None,
     rtol: so.Rtol = so.ROLL.rtol,
     atol: so.Atol = so.ROLL.atol,

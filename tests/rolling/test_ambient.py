@@ -215,11 +215,11 @@ def test_a_rectangle_on_a_plane_turns_the_sphere_by_four_quarter_turns_in_turn()
     sides = [(0.7, 0, 0), (0, 1.1, 0), (-0.7, 0, 0), (0, -1.1, 0)]
     p = RollParams(radius=0.5, start_at=(0, 0, 0), heading=(0, 1, 0), **SHARP)
     r = roll_on(Plane(), p, rows(sides))
-    np.testing.assert_allclose(r.contact[-1], 0, atol=1e-9)
+    np.testing.assert_allclose(r.contact[-1], 0, atol=1e-7)
     expected = np.eye(3)
     for side in sides:
         expected = Rotation.from_rotvec(-np.array(side)).as_matrix() @ expected
-    np.testing.assert_allclose(rotation_of(r.orientation[-1]), expected, atol=1e-9)
+    np.testing.assert_allclose(rotation_of(r.orientation[-1]), expected, atol=1e-7)
     assert np.abs(expected - np.eye(3)).max() > 0.5
 
 
