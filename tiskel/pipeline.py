@@ -181,7 +181,7 @@ def run_pipeline(
     >>> parts
     ['condition', 'contract', 'skeleton', 'metrics', 'stability', 'surface', 'roll']
     >>> len(result.contraction.steps), len(result.trajectories), result.reason
-    (3, 2, '')
+    (3, 1, '')
     """
     chosen, record = params or PipelineParams(), _Record(observer)
     ready, _ = record.do(

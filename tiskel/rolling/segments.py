@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tiskel.arrays import Floats, Numbers, Stack, Table
+from tiskel.arrays import TINY, Numbers, Stack, Table
 from tiskel.rolling.ambient import Ground
 from tiskel.rolling.courses import bump
 from tiskel.rolling.inputs import Inputs
@@ -14,12 +14,8 @@ from tiskel.rolling.many import Poses, roll_many
 
 TAIL = 30.0  # radians at the end of a way that are corrected; what is before is rolled once
 SHORTEST = 0.05  # radians: a piece that turns less takes as long as one that turns as much
-STEPS, MOST, NUDGE, SMALL = (
-    8,
-    0.5,
-    1e-4,
-    1e-6,
-)  # of Newton's method: steps, radians of one, for differences, and of none
+STEPS, MOST = 8, 0.5  # of Newton's method: steps, and radians of one
+NUDGE, SMALL = 0.01, 1e-5  # radians for differences, and what is none
 
 
 @dataclass(frozen=True)
@@ -110,27 +106,35 @@ class Shooting:
         """How many shapes there are."""
         return sum(len(segment.shapes) for segment in self.tail)
 
-    def solved(self, by: Numbers, bias: Floats) -> tuple[Numbers, Numbers]:
-        """Return so much of every shape (n,) that what is missed is -bias, and what is left without the bias."""
+    def step(self, by: Numbers, off: Numbers) -> Numbers:
+        """Return how much more of every shape (n,) makes good what is missed; nothing where that is not known.
+
+        Differences are wide, since fixed steps jump a little where curvature does, as at the caps of a capsule.
+        """
+        nudges = NUDGE * np.eye(self.size)
+        sides = self.off(np.concatenate([by + nudges, by - nudges]))
+        slopes = (sides[: self.size] - sides[self.size :]).T / (2 * NUDGE)
+        if not np.isfinite(slopes).all():
+            return np.zeros(self.size)
+        step: Numbers = -np.linalg.pinv(slopes, rcond=1e-4) @ off
+        return step * min(1.0, MOST / max(float(np.abs(step).max()), TINY))
+
+    def solved(self, by: Numbers) -> Numbers:
+        """Return so much of every shape (n,) that nothing is missed, by the fixed steps."""
         now = self.off(by[None])[0]
         for _ in range(STEPS):
-            if not np.linalg.norm(now + bias) > SMALL:
+            if not np.linalg.norm(now) > SMALL:
                 break
-            off = self.off(by + np.concatenate([np.zeros((1, self.size)), NUDGE * np.eye(self.size)]))
-            slopes = (off[1:] - off[0]).T / NUDGE
-            if not np.isfinite(slopes).all():
-                break
-            step = -np.linalg.pinv(slopes, rcond=1e-4) @ (off[0] + bias)
-            step *= min(1.0, MOST / max(float(np.abs(step).max()), 1e-300))
+            step = self.step(by, now)
             for _ in range(5):
                 after = self.off((by + step)[None])[0]
-                if np.linalg.norm(after + bias) < np.linalg.norm(now + bias):
+                if np.linalg.norm(after) < np.linalg.norm(now):
                     break
                 step = step / 3
             else:
                 break
             by, now = by + step, after
-        return by, now
+        return by
 
     def with_shapes(self, by: Numbers) -> list[Segment]:
         """Return the segments with so much of every shape (n,) added."""
