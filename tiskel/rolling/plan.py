@@ -51,6 +51,15 @@ class Plan:
         How often the plan was rolled and corrected.
     params : PlanParams
         The settings.
+
+    Examples
+    --------
+    >>> from tiskel import PlanParams, plan_roll
+    >>> from tiskel.surfaces.implicit_bodies import Capsule
+    >>> params = PlanParams(start_at=(0, 0, 0.5), goal=(0.5, 0, 0.5), radius=0.25)
+    >>> plan = plan_roll(Capsule((-1, 0, 0), (1, 0, 0), 0.5), params)
+    >>> plan.run.status.value, plan.turned_off, round(plan.run.path_object, 2)
+    ('finished', None, 0.5)
     """
 
     inputs: Inputs
