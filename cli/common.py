@@ -19,6 +19,8 @@ COMMON: dict[str, tuple[Any, Any]] = {
     "log_file": (options.LogFile, None),
 }
 INPUT: dict[str, tuple[Any, Any]] = {
+    "columns": (options.Columns, CONDITIONING.columns),
+    "classification": (options.Classification, CONDITIONING.classification),
     "voxel": (options.Voxel, CONDITIONING.voxel),
     "sample": (options.Sample, options.SAMPLE),
     "crop": (options.Crop, CONDITIONING.crop),

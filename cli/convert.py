@@ -15,7 +15,14 @@ Target = Annotated[Path, typer.Argument(metavar="OUT", help="A file; its suffix 
 
 
 @common
-def convert(source: o.Source, target: Target, sample: o.Sample = o.SAMPLE, seed: o.Seed = o.CONDITIONING.seed) -> None:
+def convert(
+    source: o.Source,
+    target: Target,
+    columns: o.Columns = None,
+    classification: o.Classification = None,
+    sample: o.Sample = o.SAMPLE,
+    seed: o.Seed = o.CONDITIONING.seed,
+) -> None:
     """Convert a cloud, a mesh or a skeleton to another format.
 
     Clouds go to PLY, XYZ, PTS, CSV, TXT, NPY; a skeleton file to OBJ lines, SWC, GraphML, JSON or PLY; any stage file
@@ -34,7 +41,9 @@ def convert(source: o.Source, target: Target, sample: o.Sample = o.SAMPLE, seed:
             skeleton = parse_skeleton(data, str(source))
             stages.write(target, lambda: EXPORTS[suffix](skeleton))
             return
-        cloud = parse_cloud(data, source, mesh_samples=stages.sample_of(sample), seed=seed)
+        asked, classes = stages.columns_of(columns), stages.classes_of(classification)
+        cloud = parse_cloud(data, source, mesh_samples=stages.sample_of(sample), seed=seed, columns=asked)
+        cloud = cloud if classes is None else cloud.of_classes(classes)
         console.warn(cloud.warnings)
         console.tell(messages.said(cloud.notes))
         stages.write(target, lambda: dump_cloud(cloud.points, target))

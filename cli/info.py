@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tiskel.cli import console
+from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common
 from tiskel.cli.progress import reading, shown
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 @common
-def info(source: o.Source, as_json: o.AsJson = False) -> None:
+def info(source: o.Source, columns: o.Columns = None, as_json: o.AsJson = False) -> None:
     """Say what a file holds: points and extent of a cloud, steps of a contraction, counts of a skeleton, surfaces.
 
     A table on a terminal, JSON otherwise: `tiskel info curve.ply | jq .skeleton.ends`
     """
     with shown(reading(source)):
-        facts = _facts(source)
+        facts = _facts(source, stages.columns_of(columns))
     if as_json or not sys.stdout.isatty():
         typer.echo(json.dumps(facts, allow_nan=False))
         return
@@ -32,7 +32,7 @@ def info(source: o.Source, as_json: o.AsJson = False) -> None:
     Console().print(console.table(str(source), ["what", "value"], rows))
 
 
-def _facts(source: Any) -> dict[str, Any]:
+def _facts(source: Any, columns: tuple[str, ...] | None) -> dict[str, Any]:
     from tiskel.io.clouds import parse_cloud
     from tiskel.io.stages.contraction import parse_contraction
     from tiskel.io.stages.skeleton import parse_skeleton
@@ -51,7 +51,7 @@ def _facts(source: Any) -> dict[str, Any]:
         s = parse_skeleton(data, str(source))
         counts = {"nodes": len(s.nodes), "edges": len(s.edges), "branches": len(s.branches), **s.counts()}
         return {"file": source.name, "stage": stage, "skeleton": counts, "cloud": _extent(s.cloud)}
-    cloud = parse_cloud(data, source)
+    cloud = parse_cloud(data, source, columns=columns)
     properties = {"properties": sorted(cloud.properties)} if cloud.properties else {}
     mesh = {"mesh": cloud.mesh.as_dict()} if cloud.mesh else {}
     said = {"warnings": list(cloud.warnings), "notes": list(cloud.notes)}

@@ -51,6 +51,24 @@ LogFile = Annotated[
     ),
 ]
 
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        metavar="a,b,c",
+        help="Columns of x, y and z in a text file, by name or counted from 1. [default: as its header says]",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
+Classification = Annotated[
+    str | None,
+    typer.Option(
+        metavar="4,5",
+        help="Keep the points of these classes, of LAS and LAZ.",
+        show_default=False,
+        rich_help_panel="Input",
+    ),
+]
 Voxel = Annotated[
     float | None,
     typer.Option(

@@ -24,7 +24,24 @@ PARTS_OF_PI = re.compile(r"([+-]?)(?:(\d+(?:\.\d+)?)\*)?pi(?:/(\d+(?:\.\d+)?))?"
 def conditioning_params(given: Mapping[str, Any]) -> ConditioningParams:
     """Return what the input options say."""
     crop, sample = _numbers("--crop", given["crop"], 6), sample_of(given["sample"])
-    return ConditioningParams(**{**given, "crop": crop, "sample": sample})
+    columns, classes = columns_of(given["columns"]), classes_of(given["classification"])
+    read = {"crop": crop, "sample": sample, "columns": columns, "classification": classes}
+    return ConditioningParams(**{**given, **read})
+
+
+def columns_of(value: str | None) -> tuple[str, ...] | None:
+    """Return what --columns names."""
+    return None if value is None else tuple(value.split(","))
+
+
+def classes_of(value: str | None) -> tuple[int, ...] | None:
+    """Return the numbers of --classification."""
+    if value is None:
+        return None
+    words = [word.strip() for word in value.split(",")]
+    if not all(word.isascii() and word.isdigit() and len(word) <= 3 for word in words):
+        raise TiskelError(f"--classification needs numbers of classes such as 4,5, got {value!r}")
+    return tuple(map(int, words))
 
 
 def sample_of(value: str | int | None) -> int | None:
@@ -41,7 +58,8 @@ def read_cloud(source: Path, params: ConditioningParams) -> "Cloud":
     """Read a cloud and tell its warnings; a mesh is sampled to as many points as the cloud is to have."""
     from tiskel import load_cloud
 
-    cloud = load_cloud(source, mesh_samples=params.sample, seed=params.seed)
+    chosen: dict[str, Any] = {"columns": params.columns, "classification": params.classification}
+    cloud = load_cloud(source, mesh_samples=params.sample, seed=params.seed, **chosen)
     console.warn(cloud.warnings)
     console.tell(messages.said(cloud.notes))
     return cloud

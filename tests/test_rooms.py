@@ -45,9 +45,10 @@ WITHIN = {  # the same inside rooms that have rooms of their own
     "methods.laplacian": "methods.trace",
     "methods.robust": "methods.trace",
     "methods": "methods.trace methods.laplacian methods.robust",
-    "io.streams": "",
+    "io.limits": "",
+    "io.streams": "io.limits",
     "io.ply": "io.streams",
-    "io.formats": "io.streams io.ply",
+    "io.formats": "io.limits io.streams io.ply",
     "io.stages": "io.streams io.ply",
 }
 

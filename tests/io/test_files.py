@@ -220,7 +220,7 @@ BROKEN = {
     ),
     "noise.npz": (b"PK not a zip", "not a valid NumPy file"),
     "cloud.docx": (b"x", "unknown kind of file '.docx'"),
-    "cloud": (b"x", "unknown kind of file 'without a suffix'"),
+    "cloud": (b"x", "unknown kind of file without a suffix"),
 }
 
 

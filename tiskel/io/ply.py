@@ -172,7 +172,7 @@ def facts(ply: PlyData, stage: str, name: str) -> dict[str, Any]:
         if key != "tiskel":
             try:
                 found_facts[key] = json.loads(value)
-            except json.JSONDecodeError:
+            except (ValueError, RecursionError):
                 continue
     number = found_facts.get("format", 1)
     if not isinstance(number, int) or number > FORMAT:

@@ -2,13 +2,18 @@
 
 import mmap
 import os
+import stat
 import sys
 import tempfile
 from pathlib import Path
+from typing import BinaryIO
 
 from tiskel.errors import TiskelError
+from tiskel.io.limits import MOST_MEGABYTES, VARIABLE, most_bytes
 
 STANDARD = "-"
+PIECE = 16 << 20  #: bytes that are read at once from what does not say how long it is
+DEVICE_BYTES = 64 << 20  #: bytes after which a device such as /dev/zero counts as endless
 Bytes = bytes | mmap.mmap
 
 
@@ -18,19 +23,47 @@ def read_bytes(source: str | Path) -> bytes:
     Raises
     ------
     TiskelError
-        Where the file is missing, a folder, or cannot be read.
+        Where the file is missing, a folder, or cannot be read, and where a pipe or a device gives more than
+        :func:`tiskel.io.limits.most_bytes`.
     """
     if str(source) == STANDARD:
-        return sys.stdin.buffer.read()
+        return _all_of(_standard_input(), "standard input")
     path = Path(source)
     if path.is_dir():
         raise TiskelError(f"{path} is a directory; name a file in it")
     try:
-        return path.read_bytes()
+        with path.open("rb") as file:
+            return file.read() if path.is_file() else _all_of(file, str(path))
     except FileNotFoundError:
         raise TiskelError(f"no file {path}; check the path") from None
+    except ValueError as error:  # a null character
+        raise TiskelError(f"{path} cannot be the name of a file: {error}; check the path") from None
     except OSError as error:
-        raise TiskelError(f"cannot read {path}: {error.strerror}") from None
+        raise TiskelError(f"cannot read {path}: {error.strerror}; check the path and its permissions") from None
+
+
+def _standard_input() -> BinaryIO:
+    if sys.stdin is None:
+        raise TiskelError("standard input is closed; name a file, or pipe one in")
+    return sys.stdin.buffer
+
+
+def _all_of(file: BinaryIO, name: str) -> bytes:
+    """Return all that a pipe or a device gives; a device other than a terminal has no end, as a rule."""
+    endless = stat.S_ISCHR(os.fstat(file.fileno()).st_mode) and not file.isatty()
+    most = min(DEVICE_BYTES, most_bytes()) if endless else most_bytes()
+    data = bytearray()
+    try:
+        while piece := file.read(PIECE):
+            data += piece
+            if len(data) > most:
+                raise TiskelError(
+                    f"{name} gives more than {most >> 20} MB and is no file on disk; save it to one, or raise the "
+                    f"limit of {MOST_MEGABYTES} MB for pipes with {VARIABLE}"
+                )
+    except OSError as error:
+        raise TiskelError(f"cannot read {name}: {error.strerror}") from None
+    return bytes(data)
 
 
 def mapped(source: str | Path) -> Bytes:
@@ -40,12 +73,12 @@ def mapped(source: str | Path) -> Bytes:
     Raises TiskelError as :func:`read_bytes` does.
     """
     path = Path(source)
-    if str(source) == STANDARD or not path.is_file() or path.stat().st_size == 0:
-        return read_bytes(source)
     try:
+        if str(source) == STANDARD or not path.is_file() or path.stat().st_size == 0:
+            return read_bytes(source)
         with path.open("rb") as file:
             return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-    except OSError:
+    except (OSError, ValueError):
         return read_bytes(source)
 
 

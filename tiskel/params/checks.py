@@ -34,3 +34,18 @@ def so_many(name: str, value: object, words: tuple[str, ...], least: int) -> Non
     """Raise where a value is neither a whole number of at least so many nor one of the words."""
     if value not in words and (not isinstance(value, int) or isinstance(value, bool) or value < least):
         raise TiskelError(f"{name} must be {', '.join(words)} or a whole number of at least {least}, got {value!r}")
+
+
+def of_its_type(name: str, value: object, default: object) -> None:
+    """Raise where a value from a file is of another type than the default of its setting; None says nothing of it."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if default is None:
+        right = value is None or isinstance(value, int | list | tuple)
+    elif isinstance(default, bool):
+        right = isinstance(value, bool)
+    elif isinstance(default, int | float):
+        right = number and abs(value) < inf and (isinstance(default, float) or isinstance(value, int))  # type: ignore[arg-type]
+    else:
+        right = isinstance(value, str) or (number and isinstance(value, int))
+    if not right:
+        raise TiskelError(f"setting {name} cannot be {str(value)[:40]!r}; run the stage that wrote it again")

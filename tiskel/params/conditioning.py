@@ -21,6 +21,8 @@ class ConditioningParams:
     False
     """
 
+    columns: tuple[str, ...] | None = None  #: of x, y and z in a text file, by name or counted from 1
+    classification: tuple[int, ...] | None = None  #: classes whose points are kept, of LAS and LAZ
     crop: tuple[float, ...] | None = None  #: xmin, ymin, zmin, xmax, ymax, zmax
     outliers: bool = False  #: remove points whose mean neighbour distance is 2 deviations above the mean
     voxel: float | None = None  #: side of the cubes whose points become their mean

@@ -10,7 +10,7 @@ from math import inf
 from typing import Any, Literal, get_args
 
 from tiskel.errors import TiskelError
-from tiskel.params.checks import among, at_least, between, finite, so_many
+from tiskel.params.checks import among, at_least, between, finite, of_its_type, so_many
 
 Method = Literal["robust", "gls", "lbc"]
 Normalisation = Literal["side", "diagonal"]
@@ -223,9 +223,18 @@ def refuse_foreign(kind: type[ContractionParams], names: Iterable[str]) -> None:
 
 
 def known_settings(document: Mapping[str, Any]) -> ContractionParams:
-    """Return the settings in a document, without those that the method does not read: older files name all of them."""
+    """Return the settings in a document, without those that the method does not read: older files name all of them.
+
+    Raises
+    ------
+    TiskelError
+        For a value of another type than the setting has, and one that it cannot have.
+    """
     kind = params_class(document.get("method", "robust"))
-    return kind(**{name: value for name, value in document.items() if name in settings_of(kind) and value is not None})
+    given = {name: value for name, value in document.items() if name in settings_of(kind) and value is not None}
+    for field in fields(kind):  # type: ignore[arg-type]
+        of_its_type(field.name, given.get(field.name, field.default), field.default)
+    return kind(**given)
 
 
 def published_neighbours(count: int) -> int:

@@ -1,5 +1,7 @@
 """What can be done to a cloud before the first stage; each off by default, each reported."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from tiskel.arrays import Mask, Points, as_points, diagonal, finite_rows
@@ -47,7 +49,7 @@ def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple
     ((1000, 3), ('sampling took away 3096 points',))
     """
     report: list[str] = []
-    if params == ConditioningParams(seed=params.seed):
+    if replace(params, columns=None, classification=None) == ConditioningParams(seed=params.seed):
         return points, ()
     every = as_points(points)
     points = every[finite_rows(every)]

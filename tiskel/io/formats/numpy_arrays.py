@@ -1,6 +1,7 @@
 """Clouds as NumPy arrays: NPY and NPZ."""
 
 import io
+import zipfile
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,15 @@ import numpy.typing as npt
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.io.formats.base import Format, Parsed, short
+from tiskel.io.limits import check_unpacked
 
+PACKED = b"PK"  #: first bytes of an archive of arrays
+USUAL = ("points", "xyz", "pts", "pos", "positions", "coords", "vertices", "cloud", "pc", "pcd", "arr_0")  #: in an NPZ
 NUMBERS = "fiu"  #: kinds of dtype that are coordinates: floating, signed and unsigned
 
 
 def read(data: bytes, name: str) -> Parsed:
-    """Return the cloud of an NPY file, or of the array "points" or the only array of an NPZ file.
+    """Return the cloud of an NPY file, or of the array of a usual name or the only array of an NPZ file.
 
     An array is (n, 3), or (n, 4 and more) with x, y, z first, or of (n,) records
     with fields x, y, z; leading axes of length 1 are dropped.
@@ -47,6 +51,8 @@ def write(points: Points) -> bytes:
 def _load(data: bytes, name: str) -> npt.NDArray[Any]:
     """Return the one array of the file."""
     try:
+        if data.startswith(PACKED):
+            _check_packed(data, name)
         loaded = np.load(io.BytesIO(data), allow_pickle=False)
         return np.asarray(_chosen(loaded, name) if isinstance(loaded, np.lib.npyio.NpzFile) else loaded)
     except TiskelError:
@@ -57,17 +63,26 @@ def _load(data: bytes, name: str) -> npt.NDArray[Any]:
 
 
 def _chosen(archive: Any, name: str) -> Any:
-    key = "points" if "points" in archive else archive.files[0] if len(archive.files) == 1 else None
+    files = list(archive.files)
+    usual = [key for key in USUAL if key in files]
+    key = usual[0] if usual else files[0] if len(files) == 1 else None
     if key is None:
-        raise TiskelError(f"{name} holds {short(', '.join(archive.files)) or 'nothing'}; name the cloud 'points'")
+        raise TiskelError(f"{name} holds {short(', '.join(files)) or 'nothing'}; name the cloud 'points'")
     return archive[key]
+
+
+def _check_packed(data: bytes, name: str) -> None:
+    """Raise where arrays unpack to far more than the file, which is how archives fill memories."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        for entry in archive.infolist():
+            check_unpacked(entry.file_size, len(data), name)
 
 
 def _from_columns(array: npt.NDArray[Any], name: str) -> Points:
     if array.dtype.kind not in NUMBERS:
         raise TiskelError(f"{name} holds {short(str(array.dtype))}, not real numbers; save its coordinates as float64")
     if array.ndim != 2 or array.shape[1] < 3:
-        hint = "; save one cloud per file" if array.ndim == 3 else ""
+        hint = "; save one cloud per file, an organised one as array.reshape(-1, 3)" if array.ndim == 3 else ""
         raise TiskelError(f"{name} must hold an array of shape (n, 3), got {array.shape}{hint}")
     if array.shape[1] > 3 and array.shape[0] < array.shape[1]:
         raise TiskelError(f"{name} must hold an array of shape (n, 3), got {array.shape}; transpose it")
@@ -89,4 +104,4 @@ def _from_records(array: npt.NDArray[Any], name: str) -> Parsed:
 
 
 NPY = Format("NPY", (".npy",), read, write, lambda data: data.startswith(b"\x93NUMPY"))
-NPZ = Format("NPZ", (".npz",), read, None, lambda data: data.startswith(b"PK"))
+NPZ = Format("NPZ", (".npz",), read, None, lambda data: data.startswith(PACKED))

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from tiskel.errors import TiskelError
 from tiskel.io.formats.base import Format, Parsed, short
 from tiskel.io.formats.lzf import decompress
+from tiskel.io.limits import check_unpacked
 
 KEYS = ("VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA")
 KINDS = {"F": "f", "I": "i", "U": "u"}
@@ -160,6 +161,7 @@ def _compressed(data: bytes, header: Header, name: str) -> list[npt.NDArray[Any]
         raise TiskelError(f"{name} ends before its compressed data; export it again")
     packed, unpacked = np.frombuffer(data, "<u4", 2, header.start).tolist()
     _promise(header, unpacked, "bytes", header.count * header.row_bytes, name)
+    check_unpacked(unpacked, len(data), name)
     body = data[header.start + SIZES :][:packed]
     try:
         flat = decompress(body, unpacked)

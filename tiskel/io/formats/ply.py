@@ -11,6 +11,7 @@ from tiskel.io.formats.faces import fans
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 END = b"end_header"
+HOLDERS = ("vertex", "point", "points", "vertices")  #: elements that programs keep points in
 NOT_ASCII = bytes(range(128)) + b"?" * 128  #: table that puts a question mark for every byte beyond ASCII
 NAN_OF_WINDOWS = re.compile(rb"[+-]?nan\([a-z]+\)")
 
@@ -31,8 +32,9 @@ def read(data: bytes, name: str) -> Parsed:
         Where the file is damaged or has no x, y, z.
     """
     file = ply.parse(_tidy(data), name)
-    holder = "cloud" if any(c.startswith("tiskel ") for c in file.comments) and "cloud" in file else "vertex"
-    if holder not in file:
+    ours = any(c.startswith("tiskel ") for c in file.comments) and "cloud" in file
+    holder = "cloud" if ours else next((one for one in HOLDERS if one in file), "")
+    if not holder:
         raise TiskelError(
             f"{name} has no element 'vertex'; it holds {short(', '.join(e.name for e in file.elements)) or 'nothing'}"
         )

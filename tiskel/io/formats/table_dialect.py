@@ -15,12 +15,22 @@ NO_DECIMAL = re.compile(r"\.|,[^\s,]*,|(?<!\d),|,(?!\d)")  #: where white space 
 IN_CELLS = r"(?:^|[;\t]) *[+-]?\d*{}\d*(?:[eEdD][+-]?\d+)? *(?=[;\t]|$)"
 DECIMAL_COMMA = re.compile(IN_CELLS.format(","), re.MULTILINE)
 DECIMAL_POINT = re.compile(IN_CELLS.format(r"\."), re.MULTILINE)
+MISSING = re.compile(r"(NA|N/A|null|None|-)?", re.IGNORECASE)  #: what stands in a cell without a value
+WORDS_OF_NONE = re.compile(
+    r"[,;\t] *[,;\t]|[,;\t] *$|^ *[,;\t]|NA|N/A|null|None|- *(?:[,;\t]|$)", re.IGNORECASE | re.MULTILINE
+)
+EMPTY = r"(?:(?<=^)|(?<={0}))[ \t\r]*(?:NA|N/A|null|None|-)?[ \t\r]*(?={0}|$)"
 UNLIKE_WHOLE = re.compile(r"[.eEn]")  #: a number with a point or an exponent, or NaN or Inf
 
 
 def is_number(word: str) -> bool:
     """Return whether a word is a number, with a point or a comma, and an exponent of C or of Fortran."""
     return NUMBER.fullmatch(word.strip()) is not None
+
+
+def is_value(word: str) -> bool:
+    """Return whether a cell holds a number, or that there is none."""
+    return is_number(word) or MISSING.fullmatch(word.strip()) is not None
 
 
 def separator_of(rows: Sequence[str]) -> str | None:
@@ -100,6 +110,9 @@ def with_points(rows: Sequence[str], separator: str | None, headed: bool, name: 
         changed = changed.replace(",", ".")
     if "n(" in text or "N(" in text:
         changed = NAN_OF_WINDOWS.sub("nan", changed)
+    if separator and WORDS_OF_NONE.search(changed):
+        blank = EMPTY if separator != "\t" else EMPTY.replace("\\t", "")
+        changed = re.sub(blank.format(separator), "nan", changed, flags=re.IGNORECASE | re.MULTILINE)
     if ("d" in text or "D" in text) and FORTRAN.search(changed):
         changed = changed.translate(EXPONENTS)
     return rows if changed is text else changed.split("\n")

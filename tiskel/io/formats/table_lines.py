@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from tiskel.errors import TiskelError
 
 COMMENTS = ("#", "//")
+BLANKS = " \r\f\v"  #: taken off the ends of rows; tabs may separate empty cells there
 LONGEST_COUNT = 18  #: digits that a count of rows may have
 MARKS = {codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
 
@@ -79,12 +80,12 @@ def table_of(data: bytes, name: str) -> Table:
         Where it is not text, holds no row, or the count is wrong.
     """
     text = _decoded(data, name)
-    lines = list(map(str.strip, text.splitlines()))
+    lines = [line.strip(BLANKS) for line in text.splitlines()]
     start = next((i for i, line in enumerate(lines) if _is_row(line)), len(lines))
-    rows = [line for line in lines if line and not line.startswith(COMMENTS)]
+    rows = [line for line in lines if line.strip() and not line.startswith(COMMENTS)]
     if not rows:
         raise TiskelError(f"{name} holds no points; check how it was made")
-    table = Table(name, text, rows, tuple(line for line in lines[:start] if line))
+    table = Table(name, text, rows, tuple(line for line in lines[:start] if line.strip()))
     if not (rows[0].isascii() and rows[0].isdigit() and len(rows[0]) <= LONGEST_COUNT):
         return table
     promised = int(rows[0])
@@ -97,7 +98,7 @@ def table_of(data: bytes, name: str) -> Table:
 
 
 def _is_row(line: str) -> bool:
-    return bool(line) and not line.startswith(COMMENTS)
+    return bool(line.strip()) and not line.startswith(COMMENTS)
 
 
 def _decoded(data: bytes, name: str) -> str:

@@ -1,6 +1,7 @@
 """Clouds as numbers in text: XYZ, PTS, CSV and their kin. What cannot be told for certain is refused, not guessed."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -9,20 +10,21 @@ import numpy as np
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.io.formats.base import Format, Parsed, short
-from tiskel.io.formats.table_dialect import cells, is_number, separator_of, unquoted, with_points
-from tiskel.io.formats.table_header import Columns, columns_of, named
+from tiskel.io.formats.table_dialect import cells, is_number, is_value, separator_of, unquoted, with_points
+from tiskel.io.formats.table_header import Columns, chosen, columns_of, named
 from tiskel.io.formats.table_lines import Table, table_of
 
 COUNTED_ROWS = 4  #: rows that a column must count before it is taken for their numbers, not for coordinates
 
 
-def read(data: bytes, name: str) -> Parsed:
+def read(data: bytes, name: str, asked: Sequence[str] | None = None) -> Parsed:
     """Return the columns headed x, y, z, or the first three where there is no header, and the other named columns.
 
     Columns are separated by semicolons, tabs, commas or white space; the
     decimal sign is a point, or a comma where something else separates. A first
     row of one whole number counts the rows, as PTS has it, and must be right.
-    A header may stand in the first row or in a comment (#, //) before it.
+    A header may stand in the first row or in a comment (#, //) before it. An
+    empty cell, NA and null are not a number.
 
     Parameters
     ----------
@@ -30,6 +32,8 @@ def read(data: bytes, name: str) -> Parsed:
         What the file holds.
     name : str
         Its name, for messages.
+    asked : sequence of three str, optional
+        The columns of x, y and z, by name or counted from 1; otherwise the header says.
 
     Raises
     ------
@@ -40,11 +44,11 @@ def read(data: bytes, name: str) -> Parsed:
     table, separator = _separated(table_of(data, name))
     names, table = _header(table, separator)
     width = _width(table, separator)
-    columns = _columns(names, table, separator, width)
+    columns = chosen(asked, names, width, name) if asked else _columns(names, table, separator, width)
     headed = columns != Columns()
     table = replace(table, rows=with_points(table.rows, separator, headed, name))
     numbers, columns = _numbers(table, separator, columns)
-    if not headed and width > 3 and _counts(numbers[:, 0]):
+    if not headed and not asked and width > 3 and _counts(numbers[:, 0]):
         raise TiskelError(
             f"{name}: its first column counts the rows, so the coordinates may be columns 2 to 4; "
             "put a line that names the columns in front, such as: index x y z"
@@ -59,13 +63,15 @@ def _separated(table: Table) -> tuple[Table, str | None]:
     separator = separator_of(rows)
     if separator and all(row.endswith(separator) for row in rows):
         rows = [row[:-1] for row in rows]
+    if separator == "\t" and all(row.startswith("\t") for row in rows):
+        rows = [row[1:] for row in rows]
     return replace(table, rows=rows), separator
 
 
 def _header(table: Table, separator: str | None) -> tuple[list[str] | None, Table]:
     """Return the names in the first row (None where it holds numbers) and the rows that follow."""
     first = cells(table.rows[0], separator) or [""]
-    if first[0] and all(map(is_number, first[:3])):
+    if first[0] and all(map(is_value, first[:3])) and any(map(is_number, first)):
         return None, table
     if first[0] and any(map(is_number, first)):
         raise table.error(0, "words and numbers", "put the coordinates first, or name the columns in a line in front")
@@ -185,4 +191,11 @@ def _write_csv(points: Points) -> bytes:
 
 XYZ = Format("XYZ", (".xyz", ".txt", ".asc", ".xyzn", ".xyzrgb"), read, write)
 PTS = Format("PTS", (".pts",), read, _write_pts)
+
+
+def _write_tsv(points: Points) -> bytes:
+    return b"x\ty\tz\n" + write(points, "\t")
+
+
 CSV = Format("CSV", (".csv",), read, _write_csv)
+TSV = Format("TSV", (".tsv",), read, _write_tsv)

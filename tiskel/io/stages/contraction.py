@@ -25,6 +25,7 @@ from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.geometry.rings import Rings
 from tiskel.io import ply
+from tiskel.io.stages import door
 from tiskel.io.stages.mesh import surface_columns, surface_elements, surface_facts, surface_from
 from tiskel.io.streams import Bytes, mapped, write_bytes
 from tiskel.methods.trace import Sections, Status, StepRecord
@@ -32,6 +33,7 @@ from tiskel.params import known_settings
 
 STAGE = "contraction"
 ORIGIN = ("x0", "y0", "z0")
+MOST_LEVELS = 2**24  #: bins of a front; there are more points than bins, but for gaps
 
 
 def write_contraction(
@@ -145,48 +147,53 @@ def parse_contraction(data: Bytes, name: str) -> Contraction:
     file = ply.parse(data, name)
     facts = ply.facts(file, STAGE, name)
     try:
-        vertex, cloud = file["vertex"].data, file["cloud"].data
+        vertex, cloud = door.element(file, "vertex"), door.element(file, "cloud")
+        rows = door.once(door.whole(vertex, "vertex", "row", len(cloud)), "vertex", "row")
+        merged_into = door.whole(cloud, "cloud", "merged_into", len(cloud), none=True)
+        door.check_chains(merged_into, rows)
         return Contraction(
-            points=ply.points_of(vertex),
-            origin=ply.points_of(vertex, ORIGIN),
-            rows=_places(vertex["row"], len(cloud), "row"),
-            cloud=ply.points_of(cloud),
-            input_rows=np.array(cloud["row"], np.int32),
-            merged_into=_places(cloud["merged_into"], len(cloud), "merged_into", none=True),
-            merged_step=np.array(cloud["merged_step"], np.int32),
+            points=door.places(vertex, "vertex"),
+            origin=door.places(vertex, "vertex", ORIGIN),
+            rows=rows,
+            cloud=door.places(cloud, "cloud"),
+            input_rows=door.whole(cloud, "cloud", "row"),
+            merged_into=merged_into,
+            merged_step=door.whole(cloud, "cloud", "merged_step", none=True),
             history=_history(file, len(vertex)),
-            steps=tuple(StepRecord(**step, seconds={}) for step in facts["steps"]),
+            steps=tuple(map(_step_from, facts["steps"])),
             status=Status(facts["status"]),
-            warnings=tuple(facts["warnings"]),
+            warnings=tuple(map(str, facts["warnings"])),
             params=known_settings(facts["params"]),
-            rings=_rings(file),
+            rings=_rings(file, len(data)),
             sections=_sections(vertex),
             surface=surface_from(file, facts),
         )
-    except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError) as error:
         raise TiskelError(f"{name} is a damaged contraction file: {error}; run tiskel contract again") from None
-
-
-def _places(column: Any, count: int, name: str, *, none: bool = False) -> Any:
-    """Return row numbers, checked: each below the count, and at least 0, or -1 where there may be none."""
-    values = np.array(column, np.int32)
-    if len(values) and (values.max() >= count or values.min() < (-1 if none else 0)):
-        raise ValueError(f"{name} names row {values.max()} of {count}")
-    return values
 
 
 def _history(file: Any, count: int) -> Stack:
     if "history" not in file:
         return np.zeros((0, count, 3))
-    return ply.points_of(file["history"].data).reshape(-1, count, 3)
+    places = door.places(door.element(file, "history"), "history")
+    if count == 0 or len(places) % count:
+        raise ValueError(f"element 'history' has {len(places)} rows, {count} are left after each step")
+    return places.reshape(-1, count, 3)
 
 
 def _sections(vertex: Any) -> Sections | None:
     """Return what only robust writes."""
     if "section" not in (vertex.dtype.names or ()):
         return None
-    section = _places(vertex["section"], len(vertex), "section", none=True)
-    return Sections(section, np.array(vertex["level"], np.int32))
+    section = door.whole(vertex, "vertex", "section", len(vertex), none=True)
+    return Sections(section, door.whole(vertex, "vertex", "level", MOST_LEVELS, none=True))
+
+
+def _step_from(said: Any) -> StepRecord:
+    """Return the record that a file has of a step."""
+    score, change = (None if said[key] is None else float(said[key]) for key in ("score", "score_change"))
+    weight, ratio = float(said["contraction_weight"]), float(said["ring_ratio"])
+    return StepRecord(weight, ratio, score, change, int(said["points"]), seconds={})
 
 
 def _step_facts(step: StepRecord) -> dict[str, Any]:
@@ -200,21 +207,23 @@ def _step_facts(step: StepRecord) -> dict[str, Any]:
     }
 
 
-def _rings(file: Any) -> Rings | None:
-    """Return the rings that lbc and gls write."""
-    vertex = file["vertex"].data
+def _rings(file: Any, given: int) -> Rings | None:
+    """Return the rings that lbc and gls write, in a file of so many bytes."""
+    vertex = door.element(file, "vertex")
     names = vertex.dtype.names or ()
     if "section" in names or not {"ring_end", "ring"} & set(names):
         return None
     if "ring_end" in names:
-        ends, flat = np.array(vertex["ring_end"], np.int64), np.array(file["ring_member"].data["place"], np.int32)
+        ends = door.whole(vertex, "vertex", "ring_end").astype(np.int64)
+        flat = door.whole(door.element(file, "ring_member"), "ring_member", "place", len(vertex))
         sizes = np.diff(ends, prepend=0)
         if len(flat) != (ends[-1] if len(ends) else 0) or (sizes < 0).any():
             raise ValueError(f"rings end at {ends[-1] if len(ends) else 0}, {len(flat)} members are listed")
     else:
         sizes = np.array([len(ring) for ring in vertex["ring"]], np.int64)
-        flat = np.concatenate([np.zeros(0, np.int32), *vertex["ring"]]).astype(np.int32)
-    _places(flat, len(sizes), "a ring")
+        listed = np.concatenate([np.zeros(0, np.int32), *vertex["ring"]])
+        flat = door.numbered(listed, "rings of element 'vertex'", "a member", len(vertex))
+    door.check_room(4 * len(sizes) * int(sizes.max(initial=1)), given, "the rings")
     members = np.full((len(sizes), max(1, int(sizes.max(initial=1)))), -1, np.int32)
     members[np.arange(members.shape[1]) < sizes[:, None]] = flat
-    return Rings(members, sizes.astype(np.int32), np.array(vertex["closed"], np.int32))
+    return Rings(members, sizes.astype(np.int32), door.whole(vertex, "vertex", "closed", 2))

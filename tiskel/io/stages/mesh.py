@@ -6,6 +6,7 @@ import numpy as np
 
 from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.io import ply
+from tiskel.io.stages import door
 
 NORMAL = ("nx", "ny", "nz")
 LINKS = "surface_link"
@@ -33,11 +34,9 @@ def surface_from(file: Any, facts: Any) -> MeshSurface | None:
     """
     if LINKS not in file:
         return None
-    vertex, links = file["vertex"].data, file[LINKS].data
-    pairs = np.stack([np.array(links[name], np.int32) for name in "ab"], axis=1)
-    if len(pairs) and not 0 <= pairs.min() <= pairs.max() < len(vertex):
-        raise ValueError(f"{LINKS} names point {pairs.max()} of {len(vertex)}")
+    vertex, links = door.element(file, "vertex"), file[LINKS].data
+    pairs = np.stack([door.whole(links, LINKS, name, len(vertex)) for name in "ab"], axis=1)
     handles = facts["mesh"]["handles"]
     known = None if handles is None else int(handles)
-    areas = np.array(vertex["area"], np.float64)
-    return MeshSurface(ply.points_of(vertex, NORMAL), areas, pairs, bool(facts["mesh"]["outward"]), known)
+    areas = door.sizes(vertex, "vertex", "area")
+    return MeshSurface(door.places(vertex, "vertex", NORMAL), areas, pairs, bool(facts["mesh"]["outward"]), known)

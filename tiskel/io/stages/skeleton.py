@@ -13,16 +13,20 @@ input and its node. Comments hold JSON: source, params, warnings and notes (see
 and some files of format 2 do not say the regime.
 """
 
+from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Edges, Indices, Mask
+from tiskel.arrays import Edges, Mask
 from tiskel.errors import TiskelError
 from tiskel.geometry.doubt import warning_from
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.regime import Regime
 from tiskel.io import ply
+from tiskel.io.stages import door
 from tiskel.io.stages.contraction import ORIGIN
 from tiskel.io.streams import Bytes, mapped, write_bytes
 from tiskel.params import known_settings
@@ -130,67 +134,62 @@ def parse_skeleton(data: Bytes, name: str) -> Skeleton:
     file = ply.parse(data, name)
     facts = ply.facts(file, STAGE, name)
     try:
-        vertex, edge, contracted, cloud = (file[part].data for part in ("vertex", "edge", "contracted", "cloud"))
-        _check_branches(file["branch"].data["count"], file["branch_node"].data["node"])
+        vertex, edge, contracted, cloud = (
+            door.element(file, part) for part in ("vertex", "edge", "contracted", "cloud")
+        )
+        _check_branches(file, len(vertex))
         params = facts.get("params", {})
         return Skeleton(
-            nodes=_finite(ply.points_of(vertex)),
+            nodes=door.places(vertex, "vertex"),
             edges=_edges(edge, len(vertex)),
-            radii=np.array(vertex["radius"], np.float64),
+            radii=door.sizes(vertex, "vertex", "radius"),
             bridged=_bridged(file, len(edge)),
-            radius_sources=_said(vertex, "radius_source"),
-            regimes=_said(vertex, "regime"),
-            node_of_point=_nodes(cloud["node"], len(vertex)),
-            cloud=ply.points_of(cloud),
-            input_rows=np.array(cloud["row"], np.int32),
-            contracted=ply.points_of(contracted),
-            origin=ply.points_of(contracted, ORIGIN),
-            rows=np.array(contracted["row"], np.int32),
+            radius_sources=_said(vertex, "radius_source", RadiusSource),
+            regimes=_said(vertex, "regime", Regime),
+            node_of_point=door.whole(cloud, "cloud", "node", len(vertex)),
+            cloud=door.places(cloud, "cloud"),
+            input_rows=door.whole(cloud, "cloud", "row"),
+            contracted=door.places(contracted, "contracted"),
+            origin=door.places(contracted, "contracted", ORIGIN),
+            rows=door.whole(contracted, "contracted", "row", len(cloud)),
             warnings=tuple(map(warning_from, facts.get("warnings", ()))),
             notes=tuple(map(warning_from, facts.get("notes", ()))),
             params=known_settings(params) if "method" in params else None,
         )
-    except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError) as error:
         raise TiskelError(f"{name} is a damaged skeleton file: {error}; run tiskel skeleton again") from None
 
 
-def _said(vertex: Any, what: str) -> npt.NDArray[np.uint8]:
+def _said(vertex: Any, what: str, kind: type[IntEnum]) -> npt.NDArray[np.uint8]:
     """Return what the vertices say of radii or regimes; 0, unknown, in an older file."""
-    known = what in (vertex.dtype.names or ())
-    return np.array(vertex[what], np.uint8) if known else np.zeros(len(vertex), np.uint8)
+    if what not in (vertex.dtype.names or ()):
+        return np.zeros(len(vertex), np.uint8)
+    return door.whole(vertex, "vertex", what, len(kind)).astype(np.uint8)
 
 
 def _bridged(file: Any, count: int) -> Mask:
     """Return which edges were bridged; none in a file of format 1."""
     if "edge_source" not in file:
         return np.zeros(count, bool)
-    bridged = np.array(file["edge_source"].data["bridged"], bool)
+    bridged = door.whole(file["edge_source"].data, "edge_source", "bridged", 2).astype(bool)
     if len(bridged) != count:
         raise ValueError(f"{len(bridged)} sources of edges for {count} edges")
     return bridged
 
 
-def _finite(nodes: Any) -> Any:
-    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
-    if len(bad):
-        raise ValueError(f"node {bad[0]} is at {nodes[bad[0]].tolist()}")
-    return nodes
-
-
-def _nodes(column: Any, count: int) -> Indices:
-    nodes = np.array(column, np.int32)
-    if len(nodes) and (nodes.min() < 0 or nodes.max() >= count):
-        raise ValueError(f"a point or an edge names node {nodes.max()}, there are {count}")
-    return nodes
-
-
 def _edges(edge: Any, count: int) -> Edges:
-    edges = np.stack([_nodes(edge["vertex1"], count), _nodes(edge["vertex2"], count)], axis=1)
-    if len(np.unique(np.sort(edges, axis=1), axis=0)) < len(edges) or (edges[:, 0] == edges[:, 1]).any():
-        raise ValueError("an edge is there twice, or leads nowhere")
+    edges = np.stack([door.whole(edge, "edge", end, count) for end in ("vertex1", "vertex2")], axis=1)
+    loops = np.flatnonzero(edges[:, 0] == edges[:, 1])
+    if len(loops):
+        raise ValueError(f"element 'edge', row {loops[0]}: it joins node {edges[loops[0], 0]} to itself")
+    pairs = np.asarray(np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)[1].ravel(), np.int32)
+    door.once(pairs, "edge", "the pair of nodes")
     return edges
 
 
-def _check_branches(counts: Indices, nodes: Indices) -> None:
-    if counts.sum() != len(nodes):
-        raise ValueError(f"branches have {counts.sum()} nodes, {len(nodes)} are listed")
+def _check_branches(file: Any, count: int) -> None:
+    """Raise where the lists of branches contradict the nodes; they are not read, they follow from the edges."""
+    counts = door.whole(door.element(file, "branch"), "branch", "count")
+    nodes = door.whole(door.element(file, "branch_node"), "branch_node", "node", count)
+    if counts.sum(dtype=np.int64) != len(nodes):
+        raise ValueError(f"branches have {counts.sum(dtype=np.int64)} nodes, {len(nodes)} are listed")

@@ -29,11 +29,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from tiskel.arrays import Points
+from tiskel.arrays import Points, Table
 from tiskel.errors import TiskelError
 from tiskel.geometry.bspline import DEGREE, BSplineCurve
 from tiskel.io import ply
+from tiskel.io.stages import door
 from tiskel.io.stages.body import body_document, body_of
 from tiskel.io.streams import read_bytes, write_bytes
 from tiskel.params import SurfaceParams
@@ -173,13 +175,14 @@ def parse_surfaces(data: bytes, name: str) -> Surfaces:
     if not isinstance(written, int) or written > FORMAT:
         raise TiskelError(f"{name} has format {written}, this tiskel reads up to {FORMAT}; install a newer tiskel")
     try:
-        cloud = np.array(document["cloud"], np.float64).reshape(-1, 3)
+        cloud = _table(document["cloud"], "cloud", 3)
         surfaces = tuple(_surface_of(one, cloud) for one in document["surfaces"])
         coverage = _coverage_of(document.get("coverage"))
         rejected = {str(branch): str(reason) for branch, reason in document["rejected"].items()}
         body = None if document.get("body") is None else body_of(document["body"], cloud)
-    except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
-        raise TiskelError(f"{name} is a damaged surface file: {error!r}; run tiskel slice again") from None
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError) as error:
+        said = f"there is no {error}" if isinstance(error, KeyError) else f"{error}"
+        raise TiskelError(f"{name} is a damaged surface file: {said}; run tiskel slice again") from None
     if not surfaces and body is None:
         raise TiskelError(f"{name} holds no surface; run tiskel slice again")
     return Surfaces(surfaces, rejected, cloud, coverage, body)
@@ -193,40 +196,62 @@ def _coverage_of(one: dict[str, Any] | None) -> Coverage | None:
 
 
 def _surface_of(one: dict[str, Any], cloud: Points) -> FittedSurface:
-    closed = bool(one["closed"])
-    axis, field, series = (_strip(one[key], closed) for key in ("axis", "field", "series"))
+    closed = one["closed"] is True
+    axis, field = (_strip(one, key, closed, 3) for key in ("axis", "field"))
+    series = _strip(one, "series", closed)
     if len({len(strip.coefficients) for strip in (axis, field, series)}) > 1:
         raise ValueError("axis, field and series have different intervals")
-    rows = np.array(one["rows"], np.int32)
-    if len(rows) and not (rows.min() >= 0 and rows.max() < len(cloud)):
-        raise ValueError(f"row {rows.max()} of {len(cloud)} points")
+    rows = door.numbered(_whole(one["rows"], "rows"), "rows", "a row", len(cloud))
     return FittedSurface(
         tube=Tube(axis, field, series),
         name=str(one["branch"]),
-        nodes=np.array(one["nodes"], np.int32),
+        nodes=door.numbered(_whole(one["nodes"], "nodes"), "nodes", "a node"),
         frame=str(one["frame"]),
         sections=tuple(_section_of(section) for section in one["sections"]),
         trimmed={str(case): int(count) for case, count in one["trimmed"].items()},
         rows=rows,
-        error=float(one["error"]),
-        distance={key: float(one["distance"][key]) for key in ("mean", "p95", "max")},
-        radius=float(one["radius"]),
-        length=float(one["length"]),
+        error=_size(one, "error"),
+        distance={key: _size(one["distance"], key) for key in ("mean", "p95", "max")},
+        radius=_size(one, "radius"),
+        length=_size(one, "length"),
         cloud=cloud,
         note=str(one["note"]),
         warnings=tuple(map(str, one["warnings"])),
     )
 
 
-def _strip(rows: Any, closed: bool) -> BSplineCurve:
-    coefficients = np.array(rows, np.float64)
-    if coefficients.ndim != 2 or len(coefficients) <= DEGREE or not np.isfinite(coefficients).all():
-        raise ValueError(f"a spline needs finite rows of coefficients, more than {DEGREE} of them")
+def _table(rows: Any, what: str, width: int | None = None) -> Table:
+    """Return rows of so many finite numbers each, of the same number where none is said."""
+    lengths = set(map(len, rows))
+    if len(lengths) > 1 or (width is not None and not lengths <= {width}):
+        raise ValueError(f"rows of {what} have {' or '.join(map(str, sorted(lengths)))} numbers")
+    table = np.array(rows, np.float64).reshape(len(rows), -1 if rows else width or 1)
+    return door.finite(table, what, "it")
+
+
+def _whole(values: Any, what: str) -> npt.NDArray[np.int64]:
+    array = np.array(values)
+    if len(array) and (array.ndim != 1 or array.dtype.kind not in "iu"):
+        raise ValueError(f"{what} must be a list of whole numbers")
+    return array.astype(np.int64)
+
+
+def _size(holder: dict[str, Any], key: str) -> float:
+    value = float(holder[key])
+    if not 0 <= value < np.inf:
+        raise ValueError(f"{key} is {value}, it must be a number of 0 or more")
+    return value
+
+
+def _strip(one: dict[str, Any], key: str, closed: bool, width: int | None = None) -> BSplineCurve:
+    coefficients = _table(one[key], key, width)
+    if len(coefficients) <= DEGREE or (width is None and coefficients.shape[1] % 2 == 0):
+        raise ValueError(f"{key} has {coefficients.shape} coefficients; more than {DEGREE} rows are needed, a0 first")
     return BSplineCurve(coefficients, V_STOP, closed)
 
 
 def _section_of(one: dict[str, Any]) -> Section:
-    error = np.nan if one["error"] is None else float(one["error"])
-    series = np.array(one["series"], np.float64)
+    error = np.nan if one["error"] is None else _size(one, "error")
+    series = _table([one["series"]], "series of sections")[0]
     gap_at = np.nan if one.get("gap_at") is None else float(one["gap_at"])
     return Section(float(one["v"]), Case(one["case"]), series, int(one["points"]), float(one["gap"]), error, gap_at)

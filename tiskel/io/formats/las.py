@@ -1,0 +1,88 @@
+"""Scans in LAS and LAZ, by laspy and lazrs (extra ``las``), once the header agrees with the size of the file."""
+
+import io
+from typing import Any
+
+import numpy as np
+
+from tiskel.errors import TiskelError
+from tiskel.io.formats.base import Format, Parsed, short
+from tiskel.io.limits import check_unpacked
+
+MARK = b"LASF"
+SHORTEST, LONG = 227, 375  #: bytes of a header up to version 1.3, and of one of version 1.4
+VLR, EVLR = 54, 60  #: least bytes of a record of variable length in front of the points, and behind them
+PACKED = 0x80  #: bit of the point format that says LAZ
+KEPT = ("intensity", "classification", "return_number", "number_of_returns", "red", "green", "blue")
+
+
+def read(data: bytes, name: str) -> Parsed:
+    """Return the points, exact to the last digit of the file's scale, and what is known of each.
+
+    Parameters
+    ----------
+    data : bytes
+        What the file holds.
+    name : str
+        Its name, for messages.
+
+    Raises
+    ------
+    TiskelError
+        Where the header promises what the file does not hold, where it is damaged, and without laspy.
+    """
+    _check(data, name)
+    try:
+        import laspy
+    except ImportError:
+        raise TiskelError(f"{name}: LAS and LAZ need laspy; pip install 'tiskel[las]', or convert it to PLY") from None
+    try:
+        found = laspy.read(io.BytesIO(data))
+        points = np.stack([np.asarray(found[axis], np.float64) for axis in "xyz"], axis=1)
+        there = set(found.point_format.dimension_names)
+        names = [key for key in (*KEPT, *found.point_format.extra_dimension_names) if key in there]
+        properties = {key: np.array(found[key]) for key in dict.fromkeys(names)}
+    except Exception as error:  # laspy, lazrs and struct each raise their own
+        raise _damaged(name, error) from None
+    except BaseException as error:  # Rust's panics are no Exception
+        if type(error).__name__ != "PanicException":
+            raise
+        raise _damaged(name, error) from None
+    return Parsed(points, properties={key: value for key, value in properties.items() if value.ndim == 1})
+
+
+def _damaged(name: str, error: BaseException) -> TiskelError:
+    reason = short(str(error)) or type(error).__name__
+    return TiskelError(f"{name} is not a valid LAS or LAZ file: {reason}; export it again")
+
+
+def _check(data: bytes, name: str) -> None:
+    """Raise where counts and sizes of the header do not fit the file."""
+    if not data.startswith(MARK) or len(data) < SHORTEST:
+        raise TiskelError(f"{name} is no LAS file: it does not begin with a whole header; is its suffix right?")
+    newest = data[25] >= 4 and len(data) >= LONG
+    start, records = _number(data, 96, 4), _number(data, 100, 4)
+    count, size = _number(data, 107, 4), _number(data, 105, 2)
+    behind, more = (_number(data, 235, 8), _number(data, 243, 4)) if newest else (0, 0)
+    count = (_number(data, 247, 8) or count) if newest else count
+    if start > len(data) or records * VLR > len(data) or (more and behind + more * EVLR > len(data)):
+        raise TiskelError(f"{name}: the header points beyond the end of the file; export it again")
+    if count == 0:
+        raise TiskelError(f"{name} holds no points; check how it was made")
+    if data[104] & PACKED:
+        check_unpacked(count * size, len(data), name)
+    elif start + count * size > len(data):
+        raise TiskelError(
+            f"{name}: the header promises {count} points of {size} bytes, {len(data) - start} follow; copy it again"
+        )
+
+
+def _number(data: bytes, at: int, size: int) -> int:
+    return int.from_bytes(data[at : at + size], "little")
+
+
+def _sniff(data: Any) -> bool:
+    return bool(data.startswith(MARK))
+
+
+LAS = Format("LAS", (".las", ".laz"), read, None, _sniff)
