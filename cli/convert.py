@@ -25,21 +25,26 @@ def convert(
 ) -> None:
     """Convert a cloud, a mesh or a skeleton to another format.
 
-    Clouds go to PLY, XYZ, PTS, CSV, TXT, NPY; a skeleton file to OBJ lines, SWC, GraphML, JSON or PLY; any stage file
-    also gives its input cloud back: `tiskel convert curve.ply curve.swc`
+    Clouds go to PLY, XYZ, PTS, CSV, TSV, TXT, NPY; skeletons, those of other programs too, to PLY, OBJ lines, SWC,
+    GraphML, JSON, VTP, DXF, .graph and CSV; any stage file also gives its input cloud back as XYZ, PTS, TXT or NPY:
+    `tiskel convert curve.ply curve.swc`
     """
     from tiskel.io.clouds import dump_cloud, parse_cloud
-    from tiskel.io.exports import EXPORTS
+    from tiskel.io.curves import as_skeleton, holds_curve, parse_curve
+    from tiskel.io.exports import EXPORTS, export_of
+    from tiskel.io.formats import WRITTEN
     from tiskel.io.stages.skeleton import parse_skeleton
     from tiskel.io.stages.which import stage_of
     from tiskel.io.streams import read_bytes
 
-    suffix = target.suffix.lower().removeprefix(".")
     with shown(reading(source)):
         data = read_bytes(source)
-        if suffix in EXPORTS and stage_of(data) == "skeleton":
-            skeleton = parse_skeleton(data, str(source))
-            stages.write(target, lambda: EXPORTS[suffix](skeleton))
+        ours = stage_of(data) == "skeleton"
+        points_only = target.suffix.lower() in WRITTEN and target.suffix.lower().removeprefix(".") not in EXPORTS
+        if not points_only and (ours or holds_curve(data, source)):
+            skeleton = parse_skeleton(data, str(source)) if ours else as_skeleton(parse_curve(data, source))
+            kind = export_of(target)
+            stages.write(target, lambda: EXPORTS[kind](skeleton))
             return
         asked, classes = stages.columns_of(columns), stages.classes_of(classification)
         cloud = parse_cloud(data, source, mesh_samples=stages.sample_of(sample), seed=seed, columns=asked)

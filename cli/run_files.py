@@ -9,7 +9,7 @@ from tiskel.cli.report import report
 from tiskel.cli.roll import summary
 from tiskel.cli.slice import slices_csv
 from tiskel.io.clouds import Cloud
-from tiskel.io.exports import to_json, to_obj, to_swc
+from tiskel.io.exports import EXPORTS
 from tiskel.io.mesh_file import dump_mesh
 from tiskel.io.stages.contraction import dump_contraction
 from tiskel.io.stages.heat import dump_heat
@@ -34,9 +34,9 @@ def files_of(result: PipelineResult, cloud: Cloud, *, history: bool) -> Files:
     return {
         "contraction.ply": lambda: dump_contraction(c, source, history=history),
         "skeleton.ply": lambda: dump_skeleton(s, source),
-        "skeleton.obj": lambda: to_obj(s),
-        "skeleton.swc": lambda: to_swc(s),
-        "skeleton.json": lambda: to_json(s),
+        "skeleton.obj": lambda: EXPORTS["obj"](s),
+        "skeleton.swc": lambda: EXPORTS["swc"](s),
+        "skeleton.json": lambda: EXPORTS["json"](s),
         "metrics.ply": lambda: dump_heat(result.quality),
         **_surface_files(result, source),
         "metrics.json": lambda: _document(result.quality.as_dict()),

@@ -2,7 +2,8 @@
 
 import json
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, get_args
+from pathlib import Path
+from typing import Annotated, Any, Literal, cast
 
 import typer
 
@@ -14,8 +15,7 @@ from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
 from tiskel.params import SkeletonParams
 
-Format = Literal["ply", "obj", "swc", "graphml", "json"]
-FORMATS: tuple[Format, ...] = get_args(Format)
+Format = Literal["ply", "obj", "swc", "graphml", "json", "node-link.json", "vtp", "dxf", "graph", "csv"]
 
 FormatName = Annotated[
     Format | None,
@@ -28,12 +28,25 @@ FormatName = Annotated[
 ]
 
 
+Branches = Annotated[
+    Path | None,
+    typer.Option(
+        "--branches",
+        metavar="CSV",
+        help="Also a table of branches: ends, length, radii, volume, order from the root, angle, parent.",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
+
+
 @common
 @curves
 def skeleton(
     source: o.Source,
     output: o.Output = None,
     format_name: FormatName = None,
+    branches: Branches = None,
     as_json: o.Summary = False,
     *,
     curving: Mapping[str, Any],
@@ -47,7 +60,7 @@ def skeleton(
     chosen = format_of(format_name, str(output or ""))
     params = SkeletonParams(**curving)
     from tiskel import extract_skeleton
-    from tiskel.io.exports import EXPORTS
+    from tiskel.io.exports import EXPORTS, branches_csv
     from tiskel.io.ply import source_of
     from tiskel.io.stages.contraction import parse_contraction
     from tiskel.io.stages.skeleton import dump_skeleton
@@ -64,16 +77,16 @@ def skeleton(
         stages.write(target, lambda: dump_skeleton(made, source_of(data, "contraction", str(source))))
     else:
         stages.write(target, lambda: EXPORTS[chosen](made))
+    if branches is not None:
+        stages.write(branches, lambda: branches_csv(made))
     if as_json:
         typer.echo(json.dumps(messages.document_of_skeleton(source.name, made), allow_nan=False))
 
 
 def format_of(name: Format | None, output: str) -> Format:
     """Return the format named, or that of the suffix, or PLY."""
-    suffix = output.rpartition(".")[2].lower() if "." in output else ""
-    if name or not suffix or output == "-":
+    if name or not output or output == "-":
         return name or "ply"
-    for known in FORMATS:
-        if suffix == known:
-            return known
-    raise TiskelError(f"a skeleton cannot be written as {suffix!r}; choose one of {', '.join(FORMATS)}")
+    from tiskel.io.exports import export_of
+
+    return cast(Format, export_of(output))

@@ -49,6 +49,7 @@ WITHIN = {  # the same inside rooms that have rooms of their own
     "io.streams": "io.limits",
     "io.ply": "io.streams",
     "io.formats": "io.limits io.streams io.ply",
+    "io.lines": "io.limits io.streams io.ply io.formats",
     "io.stages": "io.streams io.ply",
 }
 

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from tiskel.io.clouds import load_cloud as load_cloud
     from tiskel.io.curves import Curve as Curve
     from tiskel.io.curves import load_curve as load_curve
+    from tiskel.io.exports import write_skeleton as write_skeleton
     from tiskel.io.join import join_skeletons as join_skeletons
     from tiskel.io.split import split_cloud as split_cloud
     from tiskel.io.stages.contraction import read_contraction as read_contraction
     from tiskel.io.stages.contraction import write_contraction as write_contraction
     from tiskel.io.stages.skeleton import read_skeleton as read_skeleton
-    from tiskel.io.stages.skeleton import write_skeleton as write_skeleton
     from tiskel.io.stages.surface import read_surfaces as read_surfaces
     from tiskel.io.stages.surface import write_surfaces as write_surfaces
     from tiskel.methods.trace import Status as Status
@@ -146,7 +146,7 @@ _HOME = {
     "shape_graph": "gallery.make",
     "split_cloud": "io.split",
     "write_contraction": "io.stages.contraction",
-    "write_skeleton": "io.stages.skeleton",
+    "write_skeleton": "io.exports",
     "write_surfaces": "io.stages.surface",
 }
 __all__ = sorted(_HOME)  # noqa: PLE0605

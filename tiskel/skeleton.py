@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
+from tiskel.geometry.branch_table import BranchRow, branch_table
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.labels import labels
@@ -83,6 +84,14 @@ class Skeleton(CurveGraph):
             branch[nodes] = number
         branch[self.degrees > 2] = -1
         return branch
+
+    def branch_table(self) -> tuple[BranchRow, ...]:
+        """Return a row for every branch: ends, kind, length, radii, volume, order from the root, angle, parent.
+
+        The root is that of the settings (``root``) where they have one; see
+        :func:`tiskel.geometry.branch_table.branch_table`.
+        """
+        return branch_table(self, getattr(self.params, "root", None))
 
     def to_networkx(self) -> "networkx.Graph":
         """Return a networkx.Graph.

@@ -65,3 +65,9 @@ def test_every_broken_file_gives_a_cloud_or_one_line(cases_folder: Path, tmp_pat
         sound(run, path.name)
         is_read = path.name in READ or path.name.startswith(VALID)
         assert run["code"] == (0 if is_read else 1), (path.name, run)
+
+
+def test_no_broken_file_passes_as_a_curve(cases_folder: Path, tmp_path: Path) -> None:
+    curve, cloud = cases_folder / "broken" / "four.json", cases_folder / "twigs.xyz"
+    (run,) = outcomes([["metrics", "--curve", str(curve), "--cloud", str(cloud)]], tmp_path)
+    assert "rows of 4 numbers" in sound(run, "four.json")

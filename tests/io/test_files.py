@@ -29,7 +29,7 @@ from tiskel import (
     write_skeleton,
 )
 from tiskel.io.clouds import dump_cloud
-from tiskel.io.exports import to_graphml, to_json, to_obj, to_swc
+from tiskel.io.exports import EXPORTS, to_swc
 from tiskel.io.formats import WRITTEN, numpy_arrays, ply, text
 from tiskel.io.stages.contraction import dump_contraction
 from tiskel.io.stages.skeleton import dump_skeleton
@@ -285,7 +285,7 @@ LOOPED = make_shape(shape_graph("mug"))[1]
 
 
 def test_obj_lines_cover_every_edge_once() -> None:
-    rows = to_obj(LOOPED).decode().splitlines()
+    rows = EXPORTS["obj"](LOOPED).decode().splitlines()
     assert sum(row.startswith("v ") for row in rows) == len(LOOPED.nodes)
     pairs = [
         tuple(sorted(map(int, p)))
@@ -310,10 +310,10 @@ def test_swc_ids_are_continuous_parents_come_first_and_loops_are_said() -> None:
 
 
 def test_graphml_and_json_hold_the_graph() -> None:
-    network = networkx.read_graphml(io.BytesIO(to_graphml(LOOPED)))
+    network = networkx.read_graphml(io.BytesIO(EXPORTS["graphml"](LOOPED)))
     assert network.number_of_edges() == len(LOOPED.edges)
     assert float(network.nodes["0"]["radius"]) == LOOPED.radius[0]
-    document = json.loads(to_json(LOOPED))
+    document = json.loads(EXPORTS["json"](LOOPED))
     assert document["graph"]["loops"] == 1
     np.testing.assert_array_equal(document["edges"], LOOPED.edges)
 
@@ -338,10 +338,10 @@ def test_a_stage_file_gives_regimes_sources_and_bridges_back(tmp_path: Path) -> 
 
 
 def test_json_and_graphml_name_regimes_sources_and_bridges() -> None:
-    document = json.loads(to_json(MIXED))
+    document = json.loads(EXPORTS["json"](MIXED))
     assert (document["radius_source"], document["regime"]) == (SOURCES, REGIMES)
     assert document["bridged"] == MIXED.bridged.tolist()
-    network = networkx.read_graphml(io.BytesIO(to_graphml(MIXED)))
+    network = networkx.read_graphml(io.BytesIO(EXPORTS["graphml"](MIXED)))
     assert [network.nodes[str(i)]["radius_source"] for i in range(len(SOURCES))] == SOURCES
     assert [network.nodes[str(i)]["regime"] for i in range(len(REGIMES))] == REGIMES
     assert [network.edges[str(a), str(b)]["bridged"] for a, b in MIXED.edges.tolist()] == MIXED.bridged.tolist()

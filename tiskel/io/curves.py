@@ -1,7 +1,7 @@
 """Curves from files of this and of other programs."""
 
-import io
-import json
+import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -9,16 +9,31 @@ from typing import Any
 import numpy as np
 
 from tiskel.errors import TiskelError
-from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.graph import CurveGraph, tidy_edges
 from tiskel.io import ply
 from tiskel.io.clouds import parse_cloud
 from tiskel.io.formats import numpy_arrays, text
+from tiskel.io.formats.base import short
+from tiskel.io.lines import documents, dxf, plain, vtp
+from tiskel.io.lines.base import Lines, lines, radii_of
 from tiskel.io.stages.skeleton import parse_skeleton
 from tiskel.io.stages.which import stage_of
 from tiskel.io.streams import STANDARD, read_bytes
+from tiskel.skeleton import Skeleton
 
-NODES_ALONE = (text.XYZ, text.PTS, text.CSV, numpy_arrays.NPY, numpy_arrays.NPZ)
-FORMATS = (".ply", ".obj", ".swc", ".graphml", ".json", *(suffix for kind in NODES_ALONE for suffix in kind.suffixes))
+NODES_ALONE = (text.XYZ, text.PTS, text.CSV, text.TSV, numpy_arrays.NPY, numpy_arrays.NPZ)
+CURVES: dict[str, Callable[[bytes, str], Lines]] = {
+    ".obj": plain.read_obj,
+    ".swc": plain.read_swc,
+    ".graphml": documents.read_graphml,
+    ".json": documents.read_json,
+    ".vtp": vtp.read,
+    ".dxf": dxf.read,
+    ".graph": plain.read_graph,
+}
+FORMATS = (".ply", *CURVES, *(suffix for kind in NODES_ALONE for suffix in kind.suffixes))
+NODES_FILE = re.compile(r"nodes|vertices|points", re.IGNORECASE)
+OBJ_LINE = re.compile(rb"^l[ \t]", re.MULTILINE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +47,7 @@ class Curve(CurveGraph):
     edges : (e, 2) int32
         The two nodes of every edge, as the file has them.
     radii : (v,) float64
-        NaN: radii are not read.
+        NaN where the file does not say.
     bridged : (e,) bool
         False: files of curves do not say.
     name : str
@@ -56,8 +71,9 @@ def load_curve(source: str | Path) -> Curve:
     Parameters
     ----------
     source : str or Path
-        A path (PLY with or without edges, OBJ lines, SWC, GraphML, JSON), or "-" for standard input. Text and NumPy
-        files give nodes without edges.
+        A path (PLY with or without edges, OBJ lines, SWC, GraphML, JSON, VTP, DXF, .graph, CSV of segments x1, y1, z1,
+        x2, y2, z2), or "-" for standard input. Text and NumPy files give nodes without edges, but those in a_nodes.csv
+        are joined by the pairs of rows in a_edges.csv beside it.
 
     Returns
     -------
@@ -107,85 +123,85 @@ def parse_curve(data: bytes, source: str | Path) -> Curve:
             f"{name}: unknown kind of curve {kind or 'without a suffix'!r}; known are {', '.join(FORMATS)}"
         )
     try:
-        nodes, edges = _parse(kind, data, source, name)
-        places = np.array(nodes, np.float64).reshape(-1, 3)
-        links = np.array(edges, np.int64).reshape(-1, 2)
+        found = _parse(kind, data, source, name)
     except TiskelError:
         raise
     except Exception as error:
-        raise TiskelError(f"{name} is not a valid {kind[1:].upper()} curve: {error}; export it again") from None
-    if len(links) and (links.min() < 0 or links.max() >= len(places)):
-        raise TiskelError(f"{name}: an edge names node {links.max()}, there are {len(places)}; export it again")
-    return Curve(places, links.astype(np.int32), name=name)
+        said = short(f"there is no {error}" if isinstance(error, KeyError) else str(error) or type(error).__name__)
+        raise TiskelError(f"{name} is not a valid {kind[1:].upper()} curve: {said}; export it again") from None
+    radii = np.full(len(found.nodes), np.nan) if found.radii is None else found.radii
+    return Curve(found.nodes, found.edges, radii, name=name)
+
+
+def holds_curve(data: bytes, source: str | Path) -> bool:
+    """Tell whether a file that may be a cloud or a curve holds edges: by its suffix, or by what it says."""
+    kind = Path(source).suffix.lower() if str(source) != STANDARD else _kind(data)
+    if kind in (".ply", ".obj", ".csv", ".tsv", ".txt"):
+        head = data[: max(data.find(b"end_header"), 0)]
+        edged = b"\nelement edge" in head and stage_of(data) != "contraction"
+        return (
+            edged
+            if kind == ".ply"
+            else OBJ_LINE.search(data) is not None
+            if kind == ".obj"
+            else plain.has_segments(data)
+        )
+    return kind in CURVES
+
+
+def as_skeleton(curve: CurveGraph) -> Skeleton:
+    """Return a curve as a skeleton without a cloud, so that all formats can be written; unknown radii are 0."""
+    none, nowhere = np.empty(0, np.int32), np.empty((0, 3))
+    radii = np.nan_to_num(curve.radii)
+    return Skeleton(
+        nodes=curve.nodes, edges=tidy_edges(curve.edges), radii=radii, node_of_point=none, cloud=nowhere,
+        input_rows=none, contracted=nowhere, origin=nowhere, rows=none,
+    )  # fmt: skip
 
 
 def _kind(data: bytes) -> str:
     start = data.lstrip()[:1]
-    return (
-        ".ply" if data.startswith(ply.MAGIC) else ".json" if start == b"{" else ".graphml" if start == b"<" else ".swc"
-    )
+    if start == b"<":
+        return ".vtp" if b"<VTKFile" in data[:1000] else ".graphml"
+    return ".ply" if data.startswith(ply.MAGIC) else ".json" if start == b"{" else ".swc"
 
 
-def _parse(kind: str, data: bytes, source: str | Path, name: str) -> tuple[Any, Any]:
+def _parse(kind: str, data: bytes, source: str | Path, name: str) -> Lines:
     if kind == ".ply":
         return _from_ply(data, name)
-    if kind in (".obj", ".swc"):
-        return (_from_obj if kind == ".obj" else _from_swc)(data.decode("utf-8").splitlines())
-    if kind == ".json":
-        return _from_json(json.loads(data))
-    if kind == ".graphml":
-        return _from_graphml(data)
-    return parse_cloud(data, source).points, ()
+    if kind in CURVES:
+        return CURVES[kind](data, name)
+    if plain.has_segments(data):
+        return plain.read_segments(data, name)
+    nodes = parse_cloud(data, source).points
+    return lines(nodes, _edges_beside(source, len(nodes)))
 
 
-def _from_ply(data: bytes, name: str) -> tuple[Any, Any]:
+def _edges_beside(source: str | Path, count: int) -> Any:
+    """Return the pairs of nodes in the other file of two: points in a_nodes.csv, pairs of their rows in a_edges.csv.
+
+    Rows count from 0, or from 1 where none is 0 and one is the number of nodes.
+    """
+    path = Path(source)
+    other = path.with_name(re.sub(NODES_FILE, "edges", path.name, count=1))
+    if other == path or str(source) == STANDARD or not other.is_file():
+        return ()
+    rows = [row for row in re.split(r"[\r\n]+", read_bytes(other).decode("utf-8-sig")) if row.strip()]
+    words = [re.split(r"[\s,;]+", row.strip())[:2] for row in rows]
+    words = words if all(word.isdigit() for word in words[0]) else words[1:]
+    pairs = np.array([[int(word) for word in pair] for pair in words], np.int64).reshape(-1, 2)
+    return pairs - 1 if len(pairs) and pairs.min() == 1 and pairs.max() == count else pairs
+
+
+def _from_ply(data: bytes, name: str) -> Lines:
     if stage_of(data) == "skeleton":
         skeleton = parse_skeleton(data, name)
-        return skeleton.nodes, skeleton.edges
+        return lines(skeleton.nodes, skeleton.edges, skeleton.radii)
     file = ply.parse(data, name)
+    table = file["vertex"].data
+    radius = radii_of(table.dtype.names or ())
+    radii = None if radius is None else table[radius]
     if "edge" not in file:
-        return ply.points_of(file["vertex"].data), ()
+        return lines(ply.points_of(table), (), radii)
     edge = file["edge"].data
-    return ply.points_of(file["vertex"].data), np.stack([edge["vertex1"], edge["vertex2"]], axis=1)
-
-
-def _from_obj(lines: list[str]) -> tuple[Any, Any]:
-    """Return vertices and what line elements join; an index counts from 1, a negative one from the last vertex."""
-    nodes: list[list[float]] = []
-    edges: list[tuple[int, int]] = []
-    for words in map(str.split, lines):
-        if words[:1] == ["v"]:
-            nodes.append([float(word) for word in words[1:4]])
-        elif words[:1] == ["l"]:
-            named = [int(word.split("/")[0]) for word in words[1:]]
-            places = [i - 1 if i > 0 else len(nodes) + i for i in named]
-            edges += zip(places[:-1], places[1:], strict=True)
-    return nodes, edges
-
-
-def _from_swc(lines: list[str]) -> tuple[Any, Any]:
-    """Return samples and what joins them to their parents; ids may be any whole numbers."""
-    rows = [line.split() for line in map(str.strip, lines) if line and not line.startswith("#")]
-    place = {int(float(row[0])): i for i, row in enumerate(rows)}
-    parents = [int(float(row[6])) for row in rows]
-    edges = [(place[parent], i) for i, parent in enumerate(parents) if parent != -1]
-    return [[float(word) for word in row[2:5]] for row in rows], edges
-
-
-def _from_json(document: dict[str, Any]) -> tuple[Any, Any]:
-    """Return nodes as triples, or as objects with x, y, z and id (networkx node-link), and edges or links."""
-    nodes, links = document["nodes"], document.get("edges", document.get("links", ()))
-    place = {node["id"]: i for i, node in enumerate(nodes)} if nodes and isinstance(nodes[0], dict) else None
-    if place is None:
-        return nodes, links
-    ends = [(place[link["source"]], place[link["target"]]) for link in links]
-    return [[node[axis] for axis in "xyz"] for node in nodes], ends
-
-
-def _from_graphml(data: bytes) -> tuple[Any, Any]:
-    import networkx
-
-    network = networkx.read_graphml(io.BytesIO(data))
-    place = {node: i for i, node in enumerate(network.nodes)}
-    nodes = [[float(values[axis]) for axis in "xyz"] for _, values in network.nodes(data=True)]
-    return nodes, [(place[edge[0]], place[edge[1]]) for edge in network.edges]
+    return lines(ply.points_of(table), np.stack([edge["vertex1"], edge["vertex2"]], axis=1), radii)

@@ -1,53 +1,29 @@
-"""Skeletons for other programs: OBJ lines, JSON, SWC, GraphML."""
+"""Skeletons for other programs: the table of formats, SWC, and the table of branches."""
 
+import csv
 import io
-import json
 from collections import deque
 from collections.abc import Callable
+from dataclasses import astuple, fields
 from itertools import groupby
+from pathlib import Path
 
 import numpy as np
 
+from tiskel.errors import TiskelError
+from tiskel.geometry.branch_table import BranchRow
 from tiskel.geometry.labels import labels
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
+from tiskel.io.lines import documents, dxf, plain, vtp
 from tiskel.io.stages.skeleton import dump_skeleton
+from tiskel.io.streams import STANDARD, write_bytes
 from tiskel.skeleton import Skeleton
 from tiskel.version import version
 
 # Types of SWC samples. 1 to 7 have meanings among neurons; what is read by most programs ends at 19.
 TYPES: dict[int, int] = {Regime.UNKNOWN: 0, Regime.TUBE: 11, Regime.SHEET: 12, Regime.WIRE: 13}
 TYPES_SAID = "# type " + ", ".join(f"{number} {Regime(regime).name.lower()}" for regime, number in TYPES.items())
-
-
-def to_obj(s: Skeleton) -> bytes:
-    """Return OBJ: vertices and one line element per branch; CloudCompare and MeshLab show these, unlike PLY edges."""
-    lines = [f"# tiskel {version()} skeleton", *(f"v {x!r} {y!r} {z!r}" for x, y, z in s.nodes.tolist())]
-    lines += ["l " + " ".join(str(node + 1) for node in branch) for branch in s.branches if len(branch) > 1]
-    return ("\n".join(lines) + "\n").encode()
-
-
-def to_json(s: Skeleton) -> bytes:
-    """Return one JSON document.
-
-    Of every node its place, radius, radius_source and regime, of every edge its
-    nodes and whether it was bridged; branches, the node of every point, counts,
-    warnings and notes.
-    """
-    document = {
-        "tiskel": version(),
-        "nodes": s.nodes.tolist(),
-        "edges": s.edges.tolist(),
-        "bridged": s.bridged.tolist(),
-        "radius": s.radius.tolist(),
-        "radius_source": labels(RadiusSource, s.radius_sources),
-        "regime": labels(Regime, s.regimes),
-        "branches": [branch.tolist() for branch in s.branches],
-        "node_of_point": s.node_of_point.tolist(),
-        "graph": s.counts(),
-        **s.doubts(),
-    }
-    return (json.dumps(document, allow_nan=False) + "\n").encode()
 
 
 def to_swc(s: Skeleton) -> bytes:
@@ -118,19 +94,77 @@ def spanning_forest(s: Skeleton) -> tuple[list[int], dict[int, int]]:
     return order, parent
 
 
-def to_graphml(s: Skeleton) -> bytes:
-    """Return GraphML with the attributes of :meth:`tiskel.Skeleton.to_networkx`."""
-    import networkx
-
-    out = io.BytesIO()
-    networkx.write_graphml_xml(s.to_networkx(), out)
-    return out.getvalue()
-
-
 EXPORTS: dict[str, Callable[[Skeleton], bytes]] = {
     "ply": dump_skeleton,
-    "obj": to_obj,
+    "obj": plain.write_obj,
     "swc": to_swc,
-    "graphml": to_graphml,
-    "json": to_json,
+    "graphml": documents.write_graphml,
+    "json": documents.write_json,
+    "node-link.json": documents.write_node_link,
+    "vtp": vtp.write,
+    "dxf": dxf.write,
+    "graph": plain.write_graph,
+    "csv": plain.write_segments,
 }
+
+
+def export_of(target: str | Path) -> str:
+    """Return the format of a skeleton that the suffix of a file names; PLY for standard output, pipes and devices.
+
+    Raises
+    ------
+    TiskelError
+        For an unknown suffix.
+    """
+    path = Path(target)
+    if str(target) == STANDARD or (path.exists() and not path.is_file() and not path.is_dir()):
+        return "ply"
+    found = [suffix for suffix in EXPORTS if path.name.lower().endswith(f".{suffix}")]
+    if not found:
+        raise TiskelError(
+            f"a skeleton cannot be written as {path.suffix or path.name!r}; choose one of {', '.join(EXPORTS)}"
+        )
+    return max(found, key=len)
+
+
+def write_skeleton(target: str | Path, skeleton: Skeleton, source: dict[str, str] | None = None) -> None:
+    """Write a skeleton in the format that the suffix names: the stage file as PLY, the others for other programs.
+
+    Parameters
+    ----------
+    target : path, or "-" for standard output
+        Where to: PLY, OBJ, SWC, GraphML, JSON (.node-link.json for networkx), VTP, DXF, .graph, CSV.
+    skeleton : Skeleton
+        What is written.
+    source : dict, optional
+        Name and SHA-256 of the input; for PLY.
+
+    Raises
+    ------
+    TiskelError
+        Where the suffix is unknown, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from tiskel import make_shape, read_skeleton, shape_graph, write_skeleton
+    >>> cloud, true = make_shape(shape_graph("y"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_skeleton(f"{folder}/y.ply", true)
+    ...     read_skeleton(f"{folder}/y.ply").ends
+    3
+    """
+    kind = export_of(target)
+    write_bytes(target, dump_skeleton(skeleton, source) if kind == "ply" else EXPORTS[kind](skeleton))
+
+
+def branches_csv(s: Skeleton) -> bytes:
+    """Return the table of branches as CSV; a cell is empty where there is no value."""
+    out = io.StringIO()
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow([field.name for field in fields(BranchRow)])
+    for row in s.branch_table():
+        table.writerow(
+            ["" if value is None else repr(value) if isinstance(value, float) else value for value in astuple(row)]
+        )
+    return out.getvalue().encode()

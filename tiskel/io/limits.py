@@ -13,6 +13,10 @@ MOST_MEGABYTES = 4096  #: of a pipe, unless the variable says otherwise; a file 
 FREE_BYTES, PER_BYTE = 20 << 20, 50  #: packed data may become so many bytes, and so many for each of theirs
 
 
+PART_BYTES = 64  #: of a list or an element, at least, however short it is in the file
+PARTS_FREE, PARTS_PER_BYTE = 200 << 20, 10  #: bytes that parts may take: so many, and so many for each of the file's
+
+
 def most_bytes() -> int:
     """Return how many bytes are read from what has no end of its own.
 
@@ -38,6 +42,26 @@ def check_unpacked(size: int, packed: int, name: str, how: str = "unpacks to") -
         raise TiskelError(
             f"{name} {how} {size >> 20} MB from {packed >> 10} kB, more than {PER_BYTE} times as much; "
             "if it is meant to, unpack it before"
+        )
+
+
+def check_nested(data: bytes, openings: bytes, name: str) -> None:
+    """Raise TiskelError where a document of many tiny parts would take far more memory than the file.
+
+    Parameters
+    ----------
+    data : bytes
+        The document.
+    openings : bytes
+        The characters that a part begins with.
+    name : str
+        The file's name, for messages.
+    """
+    needed = PART_BYTES * sum(data.count(openings[i : i + 1]) for i in range(len(openings)))
+    if needed > PARTS_FREE + PARTS_PER_BYTE * len(data):
+        raise TiskelError(
+            f"{name} has parts that would take {needed >> 20} MB of memory, it has {len(data) >> 20} MB; write it "
+            "with fewer and larger parts"
         )
 
 

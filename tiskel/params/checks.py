@@ -4,6 +4,8 @@ from math import inf, isfinite
 
 from tiskel.errors import TiskelError
 
+LARGEST = 1e308  #: a setting; larger whole numbers are no floating point numbers
+
 
 def among(name: str, value: str, allowed: tuple[str, ...]) -> None:
     """Raise TiskelError where a word is none of those allowed."""
@@ -44,7 +46,7 @@ def of_its_type(name: str, value: object, default: object) -> None:
     elif isinstance(default, bool):
         right = isinstance(value, bool)
     elif isinstance(default, int | float):
-        right = number and abs(value) < inf and (isinstance(default, float) or isinstance(value, int))  # type: ignore[arg-type]
+        right = number and abs(value) < LARGEST and (isinstance(default, float) or isinstance(value, int))  # type: ignore[arg-type]
     else:
         right = isinstance(value, str) or (number and isinstance(value, int))
     if not right:

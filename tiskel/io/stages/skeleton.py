@@ -28,45 +28,15 @@ from tiskel.geometry.regime import Regime
 from tiskel.io import ply
 from tiskel.io.stages import door
 from tiskel.io.stages.contraction import ORIGIN
-from tiskel.io.streams import Bytes, mapped, write_bytes
+from tiskel.io.streams import Bytes, mapped
 from tiskel.params import known_settings
 from tiskel.skeleton import Skeleton
 
 STAGE = "skeleton"
 
 
-def write_skeleton(target: str | Path, skeleton: Skeleton, source: dict[str, str] | None = None) -> None:
-    """Write a stage file.
-
-    Parameters
-    ----------
-    target : path, or "-" for standard output
-        Where to.
-    skeleton : Skeleton
-        What is written.
-    source : dict, optional
-        Name and SHA-256 of the input.
-
-    Raises
-    ------
-    TiskelError
-        Where the file cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from tiskel import make_shape, read_skeleton, shape_graph, write_skeleton
-    >>> cloud, true = make_shape(shape_graph("y"))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_skeleton(f"{folder}/y.ply", true)
-    ...     read_skeleton(f"{folder}/y.ply").ends
-    3
-    """
-    write_bytes(target, dump_skeleton(skeleton, source))
-
-
 def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
-    """Return the bytes of a stage file, the same for the same skeleton; see :func:`write_skeleton`."""
+    """Return the bytes of a stage file, the same for the same skeleton; see :func:`tiskel.write_skeleton`."""
     vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radii, "branch": s.branch_of_node(), "degree": s.degrees}
     vertex |= {"radius_source": s.radius_sources, "regime": s.regimes}
     contracted: dict[str, Any] = {**ply.xyz(s.contracted), **ply.xyz(s.origin, ORIGIN), "row": s.rows}
