@@ -1,6 +1,5 @@
 """The program ``tiskel``: its commands, and how it ends."""
 
-import os
 import signal
 import sys
 from types import FrameType
@@ -8,7 +7,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from tiskel.cli import console
+from tiskel.cli import console, descriptors
 from tiskel.cli.commands import MARKUP, Commands
 from tiskel.errors import TiskelError
 
@@ -53,6 +52,7 @@ def common(
 def main() -> None:
     """Run the program; never show a traceback unless asked with --verbose."""
     signal.signal(signal.SIGINT, _interrupt)
+    descriptors.guard()
     try:
         app()
     except TiskelError as error:
@@ -61,10 +61,18 @@ def main() -> None:
         console.errors().print("interrupted")
         _leave(INTERRUPTED)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the interpreter complains on its way out
+        descriptors.abandon_output()
         _leave(FAILED)
     except MemoryError as error:
         _fail("out of memory; thin the cloud with --voxel or --sample", error)
+    except ImportError as error:
+        _fail(
+            f"a library cannot be loaded: {error}; tiskel doctor says which, ulimit -v whether memory is limited", error
+        )
+    except OSError as error:
+        descriptors.abandon_output()
+        place = f" {error.filename}" if error.filename else ""
+        _fail(f"the system refuses{place}: {error.strerror or error}; check space, permissions and memory", error)
     except Exception as error:
         _fail(f"unexpected {type(error).__name__}: {error}; run again with --verbose and report what it prints", error)
 
@@ -72,10 +80,13 @@ def main() -> None:
 def _fail(message: str, error: BaseException) -> NoReturn:
     if console.session.verbose:
         console.errors().print_exception()
-    console.log.error(message)
-    console.errors().print(f"error: {' '.join(message.split())}", markup=False)
+    console.fail(message)
     _leave(FAILED)
 
 
 def _leave(code: int) -> NoReturn:
+    try:
+        sys.stdout.flush()
+    except OSError:
+        descriptors.abandon_output()
     sys.exit(code)

@@ -1,5 +1,6 @@
 """Messages on stderr, and how errors leave the program."""
 
+import contextlib
 import functools
 import logging
 import sys
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from tiskel.errors import TiskelError
 from tiskel.messages import Messages
+from tiskel.wording import printable, shortened
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -41,13 +43,14 @@ def begin(*, threads: int | None, quiet: bool, verbose: bool, strict: bool, log_
         os.environ["TISKEL_NUM_THREADS"] = str(threads)
     if log_file is not None:
         try:
-            handler = logging.FileHandler(log_file)
-        except OSError as error:
-            raise TiskelError(f"cannot write the log {log_file}: {error.strerror}") from None
+            handler = _LogFile(log_file, encoding="utf-8", errors="backslashreplace")
+        except (OSError, ValueError) as error:
+            said = getattr(error, "strerror", None) or error
+            raise TiskelError(f"cannot write the log {log_file}: {said}; name another file with --log") from None
         handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
         log.addHandler(handler)
         log.setLevel(logging.INFO)
-        log.info("%s", " ".join(sys.argv[1:]))
+        log.info("%s", printable(" ".join(sys.argv[1:])))
 
 
 @functools.cache
@@ -60,18 +63,43 @@ def errors() -> "Console":
 
 def say(message: str) -> None:
     """Tell the user something on stderr, unless quiet."""
-    log.info(message)
+    log.info(printable(message))
     if not session.quiet:
-        errors().print(message, markup=False)
+        _print(message)
+
+
+def fail(message: str) -> None:
+    """Say why the program ends: in the log, and on stderr however quiet it is to be."""
+    said = shortened(printable(message))
+    log.error(said)
+    with contextlib.suppress(OSError):  # nobody can be told
+        errors().print(f"error: {said}", markup=False)
+
+
+def _print(message: str) -> None:
+    with contextlib.suppress(OSError):  # a full disk behind standard error is no reason to stop
+        errors().print(printable(message), markup=False)
+
+
+class _LogFile(logging.FileHandler):
+    """A log that is given up, with one warning, where it can no longer be written."""
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        """Say it once, and write no more."""
+        log.removeHandler(self)
+        reason = getattr(sys.exc_info()[1], "strerror", None) or sys.exc_info()[1]
+        with contextlib.suppress(OSError):
+            self.stream = None
+        warn((f"the log {self.baseFilename} cannot be written: {reason}",))
 
 
 def warn(messages: tuple[str, ...]) -> None:
     """Print warnings, and keep them in mind for --strict."""
     for message in messages:
         session.warned.append(message)
-        log.warning(message)
+        log.warning(printable(message))
         if not session.quiet:
-            errors().print(f"warning: {message}", markup=False)
+            _print(f"warning: {shortened(printable(message))}")
 
 
 def end() -> None:
@@ -94,10 +122,11 @@ def tell(messages: Messages) -> None:
 def table(title: str, columns: list[str], rows: list[list[str]]) -> "Table":
     """Return a Rich table of strings, numbers to the right."""
     from rich.table import Table
+    from rich.text import Text
 
-    made = Table(title=title, title_justify="left")
+    made = Table(title=Text(printable(title)), title_justify="left")
     for column in columns:
         made.add_column(column, justify="right")
     for row in rows:
-        made.add_row(*row)
+        made.add_row(*(Text(printable(cell)) for cell in row))
     return made

@@ -34,6 +34,7 @@ def contract(
     from tiskel.geometry.mesh_surface import still_on
     from tiskel.io.stages.contraction import dump_contraction
 
+    target = stages.output_path(output, source, "contraction.ply")
     with shown(reading(source)) as progress:
         cloud = stages.read_cloud(source, conditioning_params)
         points, report = condition(cloud.points, conditioning_params)
@@ -41,5 +42,4 @@ def contract(
         surface, weighted = still_on(cloud.surface, points, cloud.points), stages.weights_of(cloud, weights)
         contraction = contract_cloud(points, params, weighted, surface, progress=progress)
     stages.tell_contraction(contraction)
-    target = stages.output_path(output, source, "contraction.ply")
     stages.write(target, lambda: dump_contraction(contraction, cloud.source, history=history))

@@ -37,6 +37,7 @@ def convert(
     from tiskel.io.stages.which import stage_of
     from tiskel.io.streams import read_bytes
 
+    stages.check_targets(target)
     with shown(reading(source)):
         data = read_bytes(source)
         ours = stage_of(data) == "skeleton"

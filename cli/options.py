@@ -10,6 +10,7 @@ from tiskel.params import ConditioningParams, Method, NoiseKind, PipelineParams
 CONDITIONING = ConditioningParams()
 PIPELINE = PipelineParams()
 SAMPLE = "auto"  #: of --sample: all points of a cloud; of a mesh as many as its thickness asks for
+MOST_THREADS = 1024  #: as the kernels have it
 METHOD: Method = PIPELINE.contraction.method
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="A file, or - for standard input.", show_default=False)]
@@ -26,6 +27,7 @@ Threads = Annotated[
     int | None,
     typer.Option(
         min=1,
+        max=MOST_THREADS,
         metavar="N",
         help="Threads of the kernels. [default: what the machine allows]",
         show_default=False,

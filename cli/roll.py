@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -17,6 +18,7 @@ from tiskel.cli.progress import reading, shown
 if TYPE_CHECKING:
     from tiskel.rolling.trajectory import Trajectory
 
+POSES = (".tum", ".yaml", ".yml")  # what a trajectory can be written as, besides CSV
 BranchName = Annotated[
     str | None,
     typer.Option(
@@ -93,6 +95,8 @@ def roll(
     from tiskel.io.stages.trajectories import as_suffixed
     from tiskel.rolling.over import ground_of, roll_over
 
+    target = stages.output_path(output, source, "path.csv", POSES) if output is not None or not as_json else Path("-")
+    stages.check_targets(plot, animate)
     with shown(reading(source)) as progress:
         surfaces = read_surfaces(source)
         surface = ground_of(surfaces, settings[0], branch)
@@ -111,7 +115,6 @@ def roll(
     if as_json:
         typer.echo(json.dumps(summary(getattr(surface, "name", "body"), runs), allow_nan=False))
     if output is not None or not as_json:
-        target = stages.output_path(output, source, "path.csv")
         stages.write(target, lambda: as_suffixed(str(target), runs))
     return None
 

@@ -69,6 +69,7 @@ def skeleton(
     target = stages.output_path(output, source, f"skeleton.{chosen}")
     if as_json and str(target) == "-":
         raise TiskelError("--json and the skeleton would both go to standard output; name a file for it with -o")
+    stages.check_targets(branches)
     with shown(reading(source)) as progress:
         data = read_bytes(source)
         made = extract_skeleton(parse_contraction(data, str(source)), params, progress=progress)

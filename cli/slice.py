@@ -81,6 +81,8 @@ def slice_command(
     `tiskel skeleton c.ply | tiskel slice - --mesh tube.ply | tiskel roll - > path.csv`
     """
     params = so.surface_params(branch, interval, m, order_rule, no_recentre)
+    target = stages.output_path(output, source, "surface.json")
+    stages.check_targets(mesh, table, plot)
     with shown(reading(source, curve)) as progress:
         surfaces, origin = _fitted(source, curve, params, not no_body, progress)
     console.tell(messages.of_surfaces(surfaces))
@@ -101,7 +103,6 @@ def slice_command(
         from tiskel.pictures.slices import slices_picture
 
         stages.write(plot, lambda: slices_picture(surfaces, source.name, picture_kind(str(plot))))
-    target = stages.output_path(output, source, "surface.json")
     stages.write(target, lambda: dump_surfaces(surfaces, params, origin))
 
 

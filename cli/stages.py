@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from tiskel.contraction import Contraction
     from tiskel.io.clouds import Cloud
 
+LONGEST_STEM = 100  #: characters of the input's name that the output's begins with
+STAGE_SUFFIXES = (".ply", ".json", ".csv")  #: of outputs that have one format each
 PARTS_OF_PI = re.compile(r"([+-]?)(?:(\d+(?:\.\d+)?)\*)?pi(?:/(\d+(?:\.\d+)?))?")
 
 
@@ -113,16 +115,38 @@ def _steps_table(c: "Contraction"):  # type: ignore[no-untyped-def]
     return console.table("steps", columns, rows)
 
 
-def output_path(output: Path | None, source: Path, ending: str) -> Path:
+def output_path(output: Path | None, source: Path, ending: str, also: tuple[str, ...] = ()) -> Path:
     """Return where to write: the option, standard output for a pipe or a file, a name here on a terminal."""
     if output is not None:
+        _check_output(output, ending, also)
         return output
     if not sys.stdout.isatty():
         return Path("-")
     stem = "stdin" if str(source) == "-" else source.name.split(".")[0]
-    path = Path(f"{stem}.{ending}")
+    path = Path(f"{stem[:LONGEST_STEM]}.{ending}")
+    _check_output(path, ending)
     console.say(f"writing {path}")
     return path
+
+
+def _check_output(output: Path, ending: str, also: tuple[str, ...] = ()) -> None:
+    """Raise, before the work begins, where a file cannot be written, or its suffix says another format."""
+    from tiskel.io.streams import check_target
+
+    wanted = Path(ending).suffix
+    regular = str(output) != "-" and (not output.exists() or output.is_file())
+    if regular and wanted in STAGE_SUFFIXES and output.suffix and output.suffix.lower() not in (wanted, *also):
+        raise TiskelError(f"this is written as {wanted}, not as {output.suffix!r}; name the file so, or leave -o out")
+    check_target(output)
+
+
+def check_targets(*paths: Path | None) -> None:
+    """Raise, before the work begins, where one of the files that are asked for cannot be written."""
+    from tiskel.io.streams import check_target
+
+    for path in paths:
+        if path is not None:
+            check_target(path)
 
 
 def write(target: Path, make: Callable[[], bytes]) -> None:

@@ -7,8 +7,10 @@ cache switched off. With the cache off and a folder that is there, read-only or
 not, nothing is read or kept. So the environment is mended before Taichi reads it.
 """
 
+import contextlib
 import os
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 HOME_VARIABLE = "XDG_CACHE_HOME"
@@ -35,6 +37,23 @@ def make_cache_folder() -> None:
 def cache_folder() -> Path | None:
     """Return the folder of compiled kernels, None where the cache is switched off."""
     return None if os.environ.get(CACHE_SWITCH) == "0" else _folder()
+
+
+@contextlib.contextmanager
+def somewhere() -> Iterator[None]:
+    """Give Taichi a working folder where the process has none any more; relative names mean nothing there anyway."""
+    try:
+        Path.cwd()
+    except OSError:
+        here = os.open(".", os.O_RDONLY)
+        os.chdir(Path(__file__).parent)
+        try:
+            yield
+        finally:
+            os.chdir(here)
+            os.close(here)
+    else:
+        yield
 
 
 def _folder() -> Path:

@@ -25,7 +25,7 @@ from taichi.lang._wrap_inspect import getsourcefile, getsourcelines
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
 from .errors import TiskelError
-from .folders import make_cache_folder
+from .folders import make_cache_folder, somewhere
 
 THREADS_VARIABLE = "TISKEL_NUM_THREADS"
 MOST_THREADS = 1024  # Taichi starts as many as it is told, until the system refuses and it aborts
@@ -97,15 +97,21 @@ def _start() -> None:
     threads = requested_threads()
     make_cache_folder()
     _lay_out_faster()
-    with _without_print():
-        ti.init(
-            arch=ti.cpu,
-            default_fp=ti.f64,
-            default_ip=ti.i32,
-            fast_math=False,
-            cpu_max_num_threads=threads,
-            log_level="error",
-        )
+    with _without_print(), somewhere():
+        try:
+            ti.init(
+                arch=ti.cpu,
+                default_fp=ti.f64,
+                default_ip=ti.i32,
+                fast_math=False,
+                cpu_max_num_threads=threads,
+                log_level="error",
+            )
+        except RuntimeError as error:
+            raise TiskelError(
+                f"kernels cannot start: {str(error).rpartition(']')[2].strip()} Allow the process more memory "
+                "(ulimit -v), 3 GB or more"
+            ) from None
     impl.get_runtime().materialize()  # only this thread can, and its kernel may fail before it would
     _started_in.append(os.getpid())
 

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 LINKS = (ROOT / "tiskel" / "cli", ROOT / "tiskel" / "kernels")
 
 # A room, and the rooms that it may import from, besides itself. Anything not named here fails.
-BASE = "errors arrays params timing progress"
+BASE = "errors arrays params timing progress wording"
 GEOMETRY = f"{BASE} kernels geometry"
 STAGES = f"{GEOMETRY} methods contraction skeleton"
 ALLOWED = {
@@ -19,6 +19,7 @@ ALLOWED = {
     "errors": "kernels",  # the error is defined there, so that a kernel can raise it
     "version": "",
     "timing": "",
+    "wording": "",
     "progress": "",
     "params": "errors",
     "arrays": "errors params",

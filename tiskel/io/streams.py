@@ -1,10 +1,13 @@
 """Bytes in and bytes out: files, standard streams, and files that are whole or absent."""
 
+import contextlib
+import functools
 import mmap
 import os
 import stat
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import BinaryIO
 
@@ -13,6 +16,8 @@ from tiskel.io.limits import MOST_MEGABYTES, VARIABLE, most_bytes
 
 STANDARD = "-"
 PIECE = 16 << 20  #: bytes that are read at once from what does not say how long it is
+BESIDE = ".tiskel-"  #: begins the names of files that are being written
+STALE = 60.0  #: seconds after which such a file, where nobody holds it, was left behind
 DEVICE_BYTES = 64 << 20  #: bytes after which a device such as /dev/zero counts as endless
 Bytes = bytes | mmap.mmap
 
@@ -29,9 +34,9 @@ def read_bytes(source: str | Path) -> bytes:
     if str(source) == STANDARD:
         return _all_of(_standard_input(), "standard input")
     path = Path(source)
-    if path.is_dir():
-        raise TiskelError(f"{path} is a directory; name a file in it")
     try:
+        if path.is_dir():
+            raise TiskelError(f"{path} is a directory; name a file in it")
         with path.open("rb") as file:
             return file.read() if path.is_file() else _all_of(file, str(path))
     except FileNotFoundError:
@@ -98,30 +103,104 @@ def write_bytes(target: str | Path, data: bytes) -> None:
         Where the target is a folder or cannot be written.
     """
     if str(target) == STANDARD:
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
+        _to_standard_output(data)
         return
-    path = Path(target)
-    if path.is_dir():
-        raise TiskelError(f"{path} is a directory; name a file in it")
-    if path.exists() and not path.is_file():  # a device or a named pipe takes bytes as they come
-        path.write_bytes(data)
+    check_target(target)
+    path = Path(os.path.realpath(target))  # a link stays, what it leads to is replaced
+    try:
+        if path.exists() and not path.is_file():  # a device or a named pipe takes bytes as they come
+            path.write_bytes(data)
+        else:
+            _replace(path, data)
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise TiskelError(
+            f"cannot write {target}: {error.strerror}; check the folder, its space and permissions"
+        ) from None
+
+
+def check_target(target: str | Path) -> None:
+    """Raise TiskelError where a file cannot be written, before the work for it begins.
+
+    The folder must be there, take files and have space left; the target must be no folder.
+    """
+    if str(target) == STANDARD:
         return
     try:
-        _replace(path, data)
+        path = Path(os.path.realpath(target))
+        if path.is_dir():
+            raise TiskelError(f"{target} is a directory; name a file in it")
+        if path.exists() and not path.is_file():
+            return
+        folder = path.parent
+        if not folder.is_dir():
+            raise TiskelError(f"cannot write {target}: there is no folder {folder}; make it, or name another")
+        if not os.access(folder, os.W_OK | os.X_OK):
+            raise TiskelError(f"cannot write {target}: the folder {folder} takes no files; check its permissions")
+        space = os.statvfs(folder) if hasattr(os, "statvfs") else None
+    except (OSError, ValueError) as error:
+        raise TiskelError(
+            f"cannot write {target}: {getattr(error, 'strerror', None) or error}; name another file"
+        ) from None
+    if space is not None and space.f_blocks and space.f_bavail == 0:
+        raise TiskelError(f"cannot write {target}: no space is left in {folder}; free some, or name another folder")
+
+
+def _to_standard_output(data: bytes) -> None:
+    if sys.stdout is None:
+        raise TiskelError("standard output is closed; name a file with -o")
+    try:
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        raise
     except OSError as error:
-        raise TiskelError(f"cannot write {path}: {error.strerror}; check the folder and its permissions") from None
+        raise TiskelError(f"cannot write standard output: {error.strerror}; name a file with -o") from None
 
 
 def _replace(path: Path, data: bytes) -> None:
-    handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    """Write a file beside its target, and put it in its place; what killed runs left beside it goes."""
+    _remove_left_behind(path.parent)
+    handle, beside = tempfile.mkstemp(dir=path.parent, prefix=BESIDE, suffix=".part")
     try:
         with os.fdopen(handle, "wb") as file:
+            _lock(file.fileno())
             file.write(data)
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(beside).chmod(0o666 & ~mask)  # as an ordinary new file would have
-        Path(beside).replace(path)
+            file.flush()
+            Path(beside).chmod(_mode(path))
+            Path(beside).replace(path)
     except BaseException:
         Path(beside).unlink(missing_ok=True)
         raise
+
+
+def _mode(path: Path) -> int:
+    """Return the permissions of a file that is there, or those of an ordinary new one."""
+    if path.exists():
+        return stat.S_IMODE(path.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def _lock(descriptor: int) -> bool:
+    """Lock a file for as long as it is open; False where another process holds it, or cannot be asked."""
+    try:
+        import fcntl
+
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (ImportError, OSError):
+        return False
+    return True
+
+
+@functools.cache
+def _remove_left_behind(folder: Path) -> None:
+    """Remove what runs that were killed left in a folder: old enough, and locked by nobody; once in a process."""
+    for path in folder.glob(f"{BESIDE}*.part"):
+        with contextlib.suppress(OSError):
+            if time.time() - path.stat().st_mtime > STALE:
+                with path.open("rb") as file:
+                    if _lock(file.fileno()):
+                        path.unlink()

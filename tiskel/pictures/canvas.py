@@ -1,12 +1,16 @@
 """What all pictures share: figures without a screen, bytes without dates, views, colours."""
 
+import contextlib
 import io
+import os
+import sys
 from typing import Any
 
 import numpy as np
 
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
+from tiskel.wording import printable
 
 SHOWN_POINTS = 20_000  # more only blacken the picture
 CLOUD, CURVE, POINTS, INK = "#b9c2cc", "#c0392b", "#2471a3", "#1f3a5f"
@@ -17,9 +21,21 @@ DPI = 110
 
 def new_figure(width: float, height: float) -> Any:
     """Return an empty matplotlib figure, in inches; without pyplot it needs no backend, and leaves the user's alone."""
+    _load()
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def _load() -> None:
+    """Import matplotlib, also where MPLBACKEND names a backend that there is not: none is needed here."""
+    asked = None if "matplotlib" in sys.modules else os.environ.pop("MPLBACKEND", None)
+    import matplotlib
+
+    if asked is not None:
+        os.environ["MPLBACKEND"] = asked
+        with contextlib.suppress(ValueError):
+            matplotlib.rcParams["backend"] = asked
 
 
 def rendered(figure: Any, kind: str = "png") -> bytes:
@@ -42,6 +58,10 @@ def rendered(figure: Any, kind: str = "png") -> bytes:
     if kind not in FORMATS:
         raise TiskelError(f"a picture cannot be written as {kind!r}; choose one of {', '.join(FORMATS)}")
     metadata = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
+    titles = [title for title in (figure._suptitle, *(panel.title for panel in figure.axes)) if title is not None]
+    for title in titles:  # names of files and branches may hold dollars and worse
+        title.set_parse_math(False)
+        title.set_text("\n".join(map(printable, title.get_text().split("\n"))))
     out = io.BytesIO()
     with matplotlib.rc_context({"svg.hashsalt": "tiskel"}):
         figure.savefig(out, format=kind, dpi=DPI, metadata=metadata)

@@ -39,10 +39,13 @@ def read(data: bytes, name: str) -> Parsed:
             f"{name}: E57 needs a reader; pip install 'tiskel[e57]', or convert it to LAS or PLY"
         ) from None
     try:
-        with tempfile.TemporaryDirectory(prefix="tiskel-") as folder:
-            path = Path(folder, "scan.e57")
-            path.write_bytes(data)
-            found = e57.read_points(str(path))
+        with tempfile.NamedTemporaryFile(prefix="tiskel-", suffix=".e57") as file:
+            file.write(data)
+            file.flush()
+            path = Path(f"/proc/self/fd/{file.fileno()}")
+            if path.exists():  # without a name there is nothing that a killed run leaves behind
+                Path(file.name).unlink()
+            found = e57.read_points(str(path if path.exists() else file.name))
         points = np.array(found.points, np.float64).reshape(-1, 3)
         intensity, colour = np.asarray(found.intensity), np.asarray(found.color)
     except Exception as error:
