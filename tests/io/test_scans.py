@@ -7,6 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from reference.e57 import INTENSITIES
+from reference.e57 import POINTS as POINTS_E57
+from reference.e57 import SCAN as SCAN_E57
 from tiskel import TiskelError, load_cloud
 from tiskel.io.clouds import parse_cloud
 from tiskel.io.formats import las
@@ -58,6 +61,23 @@ def test_a_real_scan_in_las(reference_folder: Path) -> None:
     cloud = load_cloud(reference_folder / "clouds" / "tree_scan.las")
     assert cloud.points.shape == (20198, 3)
     np.testing.assert_allclose(cloud.points[0], [-5.4155002, 15.8999996, 19.638999], atol=1e-6)
+
+
+def test_e57_stands_in_the_world() -> None:
+    pytest.importorskip("e57")
+    cloud = parse_cloud(SCAN_E57, "a.e57")
+    np.testing.assert_allclose(cloud.points, POINTS_E57, atol=1e-9)
+    np.testing.assert_allclose(cloud.properties["intensity"], INTENSITIES)
+
+
+def test_a_compiled_reader_that_dies_is_one_line() -> None:
+    """A chunk table that promises 4 thousand million chunks: the reader of LAZ aborts."""
+    data = bytearray(las_bytes(packed=True))
+    start = int.from_bytes(data[96:100], "little")
+    table = int.from_bytes(data[start : start + 8], "little")
+    data[table + 4 : table + 8] = b"\xff\xff\xff\x7f"
+    with pytest.raises(TiskelError, match="is not a valid LAZ file: memory allocation"):
+        parse_cloud(bytes(data), "a.laz")
 
 
 def test_e57_that_is_cut_short_is_refused() -> None:

@@ -47,7 +47,8 @@ def parse(data: Bytes, name: str) -> PlyData:
                 )
         if ply.text or _has_lists(ply.elements):
             stream = io.BytesIO(data)
-            ply = PlyData.read(stream)
+            with np.errstate(over="ignore"):  # beyond float32 is not finite, as other rows may be
+                ply = PlyData.read(stream)
             rest = b"" if ply.text else stream.read()
         else:
             rest = data[_read_tables(ply, data, stream.tell()) :]

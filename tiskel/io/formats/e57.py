@@ -1,12 +1,16 @@
 """Scans in E57, the exchange format of laser scanners, by a reader in Rust (extra ``e57``)."""
 
+import importlib.util
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tiskel.errors import TiskelError
-from tiskel.io.formats.base import Format, Parsed, short
+from tiskel.io.formats.base import Format, Parsed
+from tiskel.io.formats.isolated import read_apart
 
 MARK = b"ASTM-E57"
 HEADER, LENGTH = 48, slice(16, 24)  #: bytes of the header, and where in it the length of the file stands
@@ -32,37 +36,29 @@ def read(data: bytes, name: str) -> Parsed:
     promised = int.from_bytes(data[LENGTH], "little")
     if promised != len(data):
         raise TiskelError(f"{name}: the header promises {promised} bytes, there are {len(data)}; copy it again")
-    try:
-        import e57
-    except ImportError:
-        raise TiskelError(
-            f"{name}: E57 needs a reader; pip install 'tiskel[e57]', or convert it to LAS or PLY"
-        ) from None
-    try:
-        with tempfile.NamedTemporaryFile(prefix="tiskel-", suffix=".e57") as file:
-            file.write(data)
-            file.flush()
-            path = Path(f"/proc/self/fd/{file.fileno()}")
-            if path.exists():  # without a name there is nothing that a killed run leaves behind
-                Path(file.name).unlink()
-            found = e57.read_points(str(path if path.exists() else file.name))
-        points = np.array(found.points, np.float64).reshape(-1, 3)
-        intensity, colour = np.asarray(found.intensity), np.asarray(found.color)
-    except Exception as error:
-        raise _damaged(name, error) from None
-    except BaseException as error:  # Rust's panics are no Exception
-        if type(error).__name__ != "PanicException":
-            raise
-        raise _damaged(name, error) from None
-    properties = {"intensity": intensity.ravel()} if intensity.size == len(points) else {}
+    if importlib.util.find_spec("e57") is None:
+        raise TiskelError(f"{name}: E57 needs a reader; pip install 'tiskel[e57]', or convert it to LAS or PLY")
+    arrays = dict(read_apart(arrays_of, data, name, "E57"))
+    return Parsed(arrays.pop("points"), properties=arrays)
+
+
+def arrays_of(data: bytes) -> dict[str, npt.NDArray[Any]]:
+    """Return the points, intensity and colour; raises what the reader raises, which takes nothing but a path."""
+    import e57
+
+    with tempfile.NamedTemporaryFile(prefix="tiskel-", suffix=".e57", delete=False) as file:
+        file.write(data)
+        file.flush()
+        path = Path(f"/proc/self/fd/{file.fileno()}")
+        if path.exists():  # a file without a name is none that a killed run leaves behind
+            Path(file.name).unlink()
+        found = e57.read_points(str(path if path.exists() else file.name))
+    points = np.array(found.points, np.float64).reshape(-1, 3)
+    intensity, colour = np.asarray(found.intensity), np.asarray(found.color)
+    arrays = {"points": points} | ({"intensity": intensity.ravel()} if intensity.size == len(points) else {})
     if colour.shape == points.shape:
-        properties |= dict(zip(("red", "green", "blue"), colour.T.copy(), strict=True))
-    return Parsed(points, properties=properties)
-
-
-def _damaged(name: str, error: BaseException) -> TiskelError:
-    reason = short(str(error)) or type(error).__name__
-    return TiskelError(f"{name} is not a valid E57 file: {reason}; export it again")
+        arrays |= dict(zip(("red", "green", "blue"), colour.T.copy(), strict=True))
+    return arrays
 
 
 E57 = Format("E57", (".e57",), read, None, lambda data: data.startswith(MARK))

@@ -1,12 +1,15 @@
 """Scans in LAS and LAZ, by laspy and lazrs (extra ``las``), once the header agrees with the size of the file."""
 
+import importlib.util
 import io
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tiskel.errors import TiskelError
 from tiskel.io.formats.base import Format, Parsed, short
+from tiskel.io.formats.isolated import read_apart
 from tiskel.io.limits import check_unpacked
 
 MARK = b"LASF"
@@ -32,28 +35,29 @@ def read(data: bytes, name: str) -> Parsed:
         Where the header promises what the file does not hold, where it is damaged, and without laspy.
     """
     _check(data, name)
-    try:
-        import laspy
-    except ImportError:
-        raise TiskelError(f"{name}: LAS and LAZ need laspy; pip install 'tiskel[las]', or convert it to PLY") from None
-    try:
-        found = laspy.read(io.BytesIO(data))
-        points = np.stack([np.asarray(found[axis], np.float64) for axis in "xyz"], axis=1)
-        there = set(found.point_format.dimension_names)
-        names = [key for key in (*KEPT, *found.point_format.extra_dimension_names) if key in there]
-        properties = {key: np.array(found[key]) for key in dict.fromkeys(names)}
-    except Exception as error:  # laspy, lazrs and struct each raise their own
-        raise _damaged(name, error) from None
-    except BaseException as error:  # Rust's panics are no Exception
-        if type(error).__name__ != "PanicException":
-            raise
-        raise _damaged(name, error) from None
-    return Parsed(points, properties={key: value for key, value in properties.items() if value.ndim == 1})
+    if importlib.util.find_spec("laspy") is None:
+        raise TiskelError(f"{name}: LAS and LAZ need laspy; pip install 'tiskel[las]', or convert it to PLY")
+    if data[104] & PACKED:
+        arrays = dict(read_apart(arrays_of, data, name, "LAZ"))
+    else:
+        try:
+            arrays = arrays_of(data)
+        except Exception as error:  # laspy and struct each raise their own
+            reason = short(str(error)) or type(error).__name__
+            raise TiskelError(f"{name} is not a valid LAS file: {reason}; export it again") from None
+    return Parsed(arrays.pop("points"), properties=arrays)
 
 
-def _damaged(name: str, error: BaseException) -> TiskelError:
-    reason = short(str(error)) or type(error).__name__
-    return TiskelError(f"{name} is not a valid LAS or LAZ file: {reason}; export it again")
+def arrays_of(data: bytes) -> dict[str, npt.NDArray[Any]]:
+    """Return the points, and the other columns by name; raises what laspy and lazrs raise."""
+    import laspy
+
+    found = laspy.read(io.BytesIO(data))
+    points = np.stack([np.asarray(found[axis], np.float64) for axis in "xyz"], axis=1)
+    there = set(found.point_format.dimension_names)
+    names = [key for key in (*KEPT, *found.point_format.extra_dimension_names) if key in there and key != "points"]
+    columns = {key: np.array(found[key]) for key in dict.fromkeys(names)}
+    return {"points": points} | {key: value for key, value in columns.items() if value.shape == (len(points),)}
 
 
 def _check(data: bytes, name: str) -> None:

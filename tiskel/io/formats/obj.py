@@ -39,7 +39,7 @@ def read(data: bytes, name: str) -> Parsed:
 
 
 def _points(rows: Sequence[str], name: str) -> Points:
-    if not rows:
+    if not any(row.partition("#")[0].strip() for row in rows):
         raise TiskelError(f"{name} holds no points; check how it was made")
     try:
         points = np.loadtxt(rows, usecols=(0, 1, 2), comments="#", ndmin=2)

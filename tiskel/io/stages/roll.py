@@ -50,9 +50,13 @@ def read_inputs(source: str | Path) -> Inputs:
     >>> inputs.t.tolist(), inputs.values.shape
     ([0.0, 2.0], (2, 6))
     """
-    name = Path(source).name if str(source) != "-" else "stdin"
+    return parse_inputs(read_bytes(source), Path(source).name if str(source) != "-" else "stdin")
+
+
+def parse_inputs(data: bytes, name: str) -> Inputs:
+    """Return the inputs in the bytes of a file of this name; see :func:`read_inputs`."""
     try:
-        rows = list(csv.reader(io.StringIO(read_bytes(source).decode("utf-8-sig"))))
+        rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"))))
     except (UnicodeDecodeError, csv.Error) as error:
         raise TiskelError(f"{name} is not a CSV file: {error}; write t,wx,wy,wz,vx,vy,vz") from None
     rows = [row for row in rows if any(cell.strip() for cell in row)]
