@@ -76,9 +76,10 @@ def _extent(points: "Points") -> dict[str, Any]:
     """Return counts and the bounding box of the finite points, and that of the body where some points are stray."""
     import numpy as np
 
+    from tiskel.arrays import as_points
     from tiskel.geometry.strays import stray_points
 
-    finite = points[np.isfinite(points).all(axis=1)]
+    finite = as_points(points)[np.isfinite(points).all(axis=1)]
     box = {"min": finite.min(axis=0).tolist(), "max": finite.max(axis=0).tolist()} if len(finite) else {}
     stray = stray_points(finite)
     if stray.any():

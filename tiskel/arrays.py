@@ -24,6 +24,7 @@ Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]  #: shape (n,)
 Masks = np.ndarray[tuple[int, int], np.dtype[np.bool_]]  #: shape (n, k)
 
 TINY = np.finfo(float).tiny  # the least normal number: keeps what may be zero from being divided by
+LARGEST = 1e150  #: of a coordinate: the sum of three squares of differences is still a number
 MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
 SPREAD = np.uint64(0x9E3779B97F4A7C15)  # 2**64 over the golden ratio, odd: spreads bits (Knuth, volume 3, section 6.4)
 FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or a line to rounding
@@ -54,6 +55,9 @@ def as_points(points: npt.ArrayLike) -> Points:
     if array.ndim != 2 or array.shape[1] != 3:
         hint = "; transpose them" if array.ndim == 2 and array.shape[0] == 3 else ""
         raise TiskelError(f"points must have shape (n, 3), got {array.shape}{hint}")
+    largest = np.abs(array, where=np.isfinite(array), out=np.zeros_like(array)).max(initial=0.0)
+    if largest > LARGEST:
+        raise TiskelError(f"coordinates reach {largest:.3g}, squares beyond {LARGEST:g} overflow; scale the cloud")
     return array
 
 

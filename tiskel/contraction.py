@@ -23,6 +23,7 @@ from tiskel.arrays import (
 from tiskel.errors import TiskelError
 from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.rings import Rings
+from tiskel.geometry.scatter import doubts_about
 from tiskel.geometry.strays import stray_points
 from tiskel.methods import METHODS
 from tiskel.methods.trace import Sections, Status, StepRecord, Trace, survivors
@@ -197,6 +198,7 @@ def contract(
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
     warnings = _warnings(len(every) - len(cloud), int((~stray).sum()) - len(distinct), trace.status)
+    warnings += doubts_about(body)
     if stray.any():
         first[stray] = distinct[cKDTree(cloud[distinct]).query(cloud[stray])[1]]
     trace = replace(trace, surface=known if trace.sections is not None else None)
