@@ -80,13 +80,17 @@ def slice_command(
     Reads skeleton.ply, writes surface.json, which holds all that roll needs:
     `tiskel skeleton c.ply | tiskel slice - --mesh tube.ply | tiskel roll - > path.csv`
     """
+    from tiskel.io.mesh_file import mesh_kind
+
     params = so.surface_params(branch, interval, m, order_rule, no_recentre)
     target = stages.output_path(output, source, "surface.json")
     stages.check_targets(mesh, table, plot)
+    if mesh is not None:
+        mesh_kind(mesh)
     with shown(reading(source, curve)) as progress:
         surfaces, origin = _fitted(source, curve, params, not no_body, progress)
     console.tell(messages.of_surfaces(surfaces))
-    from tiskel.io.mesh_file import dump_mesh
+    from tiskel.io.mesh_file import mesh_bytes
     from tiskel.io.stages.surface import dump_surfaces
     from tiskel.slicing.body_mesh import mesh_of, tubes_mesh
 
@@ -94,7 +98,7 @@ def slice_command(
         raise TiskelError("no branch has a tube: there are no slices to draw or tabulate; leave out what asks for them")
     if mesh is not None:
         stages.write(
-            mesh, lambda: dump_mesh(tubes_mesh(surfaces, caps) if tubes or caps else mesh_of(surfaces), origin)
+            mesh, lambda: mesh_bytes(tubes_mesh(surfaces, caps) if tubes or caps else mesh_of(surfaces), mesh, origin)
         )
     if table is not None:
         stages.write(table, lambda: slices_csv(surfaces))

@@ -13,7 +13,7 @@ MOST_MEGABYTES = 4096  #: of a pipe, unless the variable says otherwise; a file 
 FREE_BYTES, PER_BYTE = 20 << 20, 50  #: packed data may become so many bytes, and so many for each of theirs
 
 
-PART_BYTES = 64  #: of a list or an element, at least, however short it is in the file
+PART_BYTES = 90  #: of a list or an element, at least, however short it is in the file
 PARTS_FREE, PARTS_PER_BYTE = 200 << 20, 10  #: bytes that parts may take: so many, and so many for each of the file's
 
 

@@ -41,7 +41,8 @@ def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any], count: int, name:
     if len(polygons) == 0:
         return NO_FACES
     try:
-        corners = np.concatenate([*polygons]).astype(np.int64)
+        flat = polygons.ravel() if isinstance(polygons, np.ndarray) and polygons.ndim == 2 else None
+        corners = (np.concatenate([*polygons]) if flat is None else flat).astype(np.int64)
     except OverflowError:
         raise TiskelError(f"{name}: a face names a vertex beyond all numbers; export it again") from None
     if len(corners) and (corners.min() < 0 or corners.max() >= count):

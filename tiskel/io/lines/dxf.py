@@ -1,6 +1,8 @@
 """Curves as DXF: what CAD programs and CloudCompare read."""
 
+import io
 from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -25,8 +27,8 @@ def read(data: bytes, name: str) -> Lines:
 
 
 def _groups(data: bytes) -> Iterator[Group]:
-    rows = data.decode("latin-1").splitlines()
-    for code, value in zip(rows[::2], rows[1::2], strict=False):
+    rows = io.TextIOWrapper(io.BytesIO(data), "latin-1")
+    for code, value in zip(rows, rows, strict=False):
         yield int(code), value.strip()
 
 
@@ -35,7 +37,7 @@ def _ways(groups: Iterator[Group]) -> Iterator[list[list[float]]]:
     kind, way, closed = "", [], False
     polyline: list[list[float]] | None = None  # an old polyline, whose places are entities of their own
     held: list[Group] = []
-    for code, value in [*groups, (0, "EOF")]:
+    for code, value in chain(groups, [(0, "EOF")]):
         if code != 0:
             held.append((code, value))
             continue

@@ -35,13 +35,20 @@ def write_obj(s: Skeleton) -> bytes:
 
 def read_swc(data: bytes, name: str) -> Lines:
     """Return samples and what joins them to their parents; ids may be any whole numbers."""
-    rows = [line.split() for line in map(str.strip, data.decode("utf-8").splitlines()) if line and line[0] != "#"]
-    place = {int(float(row[0])): i for i, row in enumerate(rows)}
-    if len(place) < len(rows):
+    rows = [line for line in map(str.strip, data.decode("utf-8").splitlines()) if line and line[0] != "#"]
+    if not rows:
+        raise ValueError("it holds no sample")
+    table = np.loadtxt(rows, usecols=(0, 2, 3, 4, 5, 6), ndmin=2)
+    ids, parents = table[:, 0], table[:, 5]
+    order = np.argsort(ids, kind="stable")
+    if (np.diff(ids[order]) == 0).any():
         raise ValueError("a sample is there twice")
-    parents = [int(float(row[6])) for row in rows]
-    edges = [(place[parent], i) for i, parent in enumerate(parents) if parent != -1]
-    return lines([[float(word) for word in row[2:5]] for row in rows], edges, [abs(float(row[5])) for row in rows])
+    below = np.flatnonzero(parents != -1)
+    place = np.minimum(np.searchsorted(ids[order], parents[below]), len(ids) - 1)
+    orphans = np.flatnonzero(ids[order][place] != parents[below])
+    if len(orphans):
+        raise ValueError(f"the parent {parents[below[orphans[0]]]:g} of a sample is not there")
+    return lines(table[:, 1:4], np.stack([order[place], below], axis=1), np.abs(table[:, 4]))
 
 
 def read_graph(data: bytes, name: str) -> Lines:

@@ -1,0 +1,106 @@
+"""How reliable reading is, counted anew: damaged files and files of reported trouble; writes docs/reliability.md.
+
+    python benchmarks/reliability.py --cases 10000 --state out/fuzz --write
+
+Runs the fuzzer (tests/fuzz) until every reader has had so many cases, those of
+earlier calls with the same --state included, and reads the files of TISKEL_CASES,
+each in a process of its own. Readers with a process for every file get a
+hundredth of the cases.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from fuzz.originals import originals
+
+from reference.forked import outcomes
+
+CASES = Path(os.environ.get("TISKEL_CASES", ROOT / ".." / "shared" / "cases"))
+PAGE = ROOT / "docs" / "reliability.md"
+APART, LESS = ("cloud.laz", "cloud.e57"), 100  #: readers with a process for each file, and how many fewer cases
+HEAD = """# How reliable reading is
+
+Written by `python benchmarks/reliability.py --cases N --state DIR --write`; rerun it after changes to a reader.
+
+## Damaged files
+
+Sound files with one to four changes each: bits, numbers, lines, lengths, pieces of other files (`tests/fuzz`). A fault
+is a crash, more than 2 s of the processor, more memory than ten times the file and 200 MB, any exception but
+`TiskelError`, a warning of NumPy, or a message of several lines or more than 300 characters.
+
+| reader | cases | faults |
+|---|---|---|
+"""
+
+
+def fuzzed(state: Path, cases: int) -> list[str]:
+    """Run the fuzzer and return a row for each reader."""
+    rows = []
+    for name in originals():
+        wanted = max(1, cases // LESS) if name in APART else cases
+        words = [
+            sys.executable,
+            ROOT / "tests" / "fuzz" / "run.py",
+            "--state",
+            state,
+            "--cases",
+            wanted,
+            "--readers",
+            name,
+        ]
+        subprocess.run(list(map(str, words)), check=False)
+        found = json.loads((state / f"{name}.json").read_text())
+        rows.append(f"| {name} | {found['cases']} | {len(found['faults'])} |")
+    return rows
+
+
+def reported() -> list[str]:
+    """Return a row for each folder of files of reported trouble."""
+    rows = []
+    for folder in ("formats", "broken"):
+        files = sorted((CASES / folder).iterdir()) if (CASES / folder).is_dir() else []
+        with tempfile.TemporaryDirectory() as place:
+            runs = outcomes([["info", str(path)] for path in files], Path(place))
+        read, refused = (sum(run["code"] == code for run in runs) for code in (0, 1))
+        faults = len(runs) - read - refused
+        most = max((run["megabytes"] for run in runs), default=0)
+        slowest = max((run["seconds"] for run in runs), default=0)
+        rows.append(f"| {folder} | {len(runs)} | {read} | {refused} | {faults} | {most:.0f} | {slowest:.1f} |")
+    return rows
+
+
+def main() -> None:
+    """Count, and write or print the page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--state", type=Path, default=Path("out/fuzz"))
+    parser.add_argument("--write", action="store_true")
+    given = parser.parse_args()
+    rows = fuzzed(given.state, given.cases)
+    cases, faults = (sum(int(row.split("|")[at]) for row in rows) for at in (2, 3))
+    page = HEAD + "\n".join([*rows, f"| all | {cases} | {faults} |"])
+    page += (
+        "\n\n## Files of reported trouble\n\nEach in a process of its own: a value (exit code 0) or one line (1).\n\n"
+    )
+    page += "| folder | files | read | refused | faults | MB at most | s at most |\n|---|---|---|---|---|---|---|\n"
+    page += "\n".join(reported()) + "\n\n## The environment\n\n"
+    page += (
+        "Closed streams, full disks, folders that are gone, limits of memory, odd names, links, endless input, killed\n"
+    )
+    page += "runs: `tests/cli/test_environment.py` and `tests/cli/test_surroundings.py`, one test each.\n"
+    if given.write:
+        PAGE.write_text(page)
+    else:
+        print(page)
+
+
+if __name__ == "__main__":
+    main()
