@@ -25,7 +25,10 @@ from reference.forked import outcomes
 
 CASES = Path(os.environ.get("TISKEL_CASES", ROOT / ".." / "shared" / "cases"))
 PAGE = ROOT / "docs" / "reliability.md"
-APART, LESS = ("cloud.laz", "cloud.e57"), 100  #: readers with a process for each file, and how many fewer cases
+APART, LESS = (
+    ("cloud.laz", "cloud.e57", "stdin"),
+    100,
+)  #: readers with a process for each file, and how many fewer cases
 HEAD = """# How reliable reading is
 
 Written by `python benchmarks/reliability.py --cases N --state DIR --write`; rerun it after changes to a reader.

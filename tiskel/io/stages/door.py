@@ -50,6 +50,14 @@ def numbered(values: npt.NDArray[Any], where: str, name: str, count: int = WHOLE
     return np.array(values, np.int32)
 
 
+def listed(values: Any, what: str) -> npt.NDArray[np.int64]:
+    """Return a list of whole numbers."""
+    array = np.array(values)
+    if len(array) and (array.ndim != 1 or array.dtype.kind not in "iu"):
+        raise ValueError(f"{what} must be a list of whole numbers")
+    return array.astype(np.int64)
+
+
 def places(table: npt.NDArray[Any], where: str, names: Sequence[str] = ("x", "y", "z")) -> Points:
     """Return three properties as (n, 3) float64, all of them finite."""
     for name in names:

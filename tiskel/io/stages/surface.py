@@ -29,7 +29,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tiskel.arrays import Points, Table
 from tiskel.errors import TiskelError
@@ -201,11 +200,11 @@ def _surface_of(one: dict[str, Any], cloud: Points) -> FittedSurface:
     series = _strip(one, "series", closed)
     if len({len(strip.coefficients) for strip in (axis, field, series)}) > 1:
         raise ValueError("axis, field and series have different intervals")
-    rows = door.numbered(_whole(one["rows"], "rows"), "rows", "a row", len(cloud))
+    rows = door.numbered(door.listed(one["rows"], "rows"), "rows", "a row", len(cloud))
     return FittedSurface(
         tube=Tube(axis, field, series),
         name=str(one["branch"]),
-        nodes=door.numbered(_whole(one["nodes"], "nodes"), "nodes", "a node"),
+        nodes=door.numbered(door.listed(one["nodes"], "nodes"), "nodes", "a node"),
         frame=str(one["frame"]),
         sections=tuple(_section_of(section) for section in one["sections"]),
         trimmed={str(case): int(count) for case, count in one["trimmed"].items()},
@@ -227,13 +226,6 @@ def _table(rows: Any, what: str, width: int | None = None) -> Table:
         raise ValueError(f"rows of {what} have {' or '.join(map(str, sorted(lengths)))} numbers")
     table = np.array(rows, np.float64).reshape(len(rows), -1 if rows else width or 1)
     return door.finite(table, what, "it")
-
-
-def _whole(values: Any, what: str) -> npt.NDArray[np.int64]:
-    array = np.array(values)
-    if len(array) and (array.ndim != 1 or array.dtype.kind not in "iu"):
-        raise ValueError(f"{what} must be a list of whole numbers")
-    return array.astype(np.int64)
 
 
 def _size(holder: dict[str, Any], key: str) -> float:
