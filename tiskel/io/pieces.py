@@ -19,8 +19,9 @@ from plyfile import PlyData, PlyListProperty
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
 from tiskel.io import ply
-from tiskel.io.clouds import GZIP, load_cloud
+from tiskel.io.clouds import load_cloud
 from tiskel.io.formats import format_of, text
+from tiskel.io.limits import GZIP
 from tiskel.io.streams import STANDARD
 from tiskel.io.text_pieces import text_pieces
 
