@@ -106,7 +106,7 @@ def test_what_is_wrong_with_a_file_is_told(points: Points, tmp_path: Path) -> No
         (written("head.csv", b"x,y,z\n"), "holds no points"),
         (written("c.pts", dump_cloud(points, "c.pts") + b"1 2 3\n"), "promises 3000 points, 3001 follow"),
         (written("c.xyz", dump_cloud(points, "c.xyz") + b"1 2 word\n"), "add"),
-        (written("c.foo", b"1 2 3\n"), "unknown kind"),
+        (written("c.foo", b"words of a letter\n"), "unknown kind"),
         (tmp_path / "none.ply", "check the path"),
         (tmp_path, "is a directory"),
         (Path("-"), "name a file"),
