@@ -45,6 +45,10 @@ COMMANDS = {
     ),
     "split": Entry("split", "split", "Cut a cloud that is too large into tiles that overlap, or into its objects."),
     "join": Entry("join", "join", "Make one skeleton of those of tiles or objects."),
+    "view": Entry(
+        "view", "view",
+        "Show clouds, curves, surfaces and runs together: a page that turns under the mouse, or a picture.",
+    ),
     "shape": Entry(
         "shape", "shape", "Make a cloud whose curve skeleton is known: tubes, plants, blocks, torsos, wires.",
         bare=True,

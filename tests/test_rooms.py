@@ -27,7 +27,7 @@ ALLOWED = {
     "preprocess": GEOMETRY,
     "methods": GEOMETRY,
     "contraction": f"{GEOMETRY} methods",
-    "skeleton": f"{GEOMETRY} methods contraction",
+    "skeleton": f"{GEOMETRY} methods contraction tiskel",  # to be looked at, through the face of the package
     "metrics": STAGES,
     "gallery": STAGES,
     "surfaces": GEOMETRY,
@@ -38,8 +38,11 @@ ALLOWED = {
     "pictures": f"{STAGES} metrics surfaces slicing rolling",
     "messages": f"{STAGES} surfaces slicing rolling metrics",  # the wording of what the stages report
     "pipeline": f"{STAGES} preprocess metrics surfaces slicing rolling io messages",
+    "viewer": f"{STAGES} metrics surfaces slicing rolling io pictures pipeline",
+    "report": f"{STAGES} version metrics surfaces slicing rolling pictures messages pipeline viewer",
     "tiskel": "",  # the face of the package hands names on when they are asked for
-    "cli": f"{STAGES} tiskel version preprocess metrics gallery surfaces slicing rolling io pictures pipeline messages",
+    "cli": f"{STAGES} tiskel version preprocess metrics gallery surfaces slicing rolling io pictures pipeline messages "
+    "viewer report",
 }
 WITHIN = {  # the same inside rooms that have rooms of their own
     "methods.trace": "",

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from tiskel.params import GlsParams as GlsParams
     from tiskel.params import JoinParams as JoinParams
     from tiskel.params import LbcParams as LbcParams
+    from tiskel.params import LookParams as LookParams
     from tiskel.params import MetricParams as MetricParams
     from tiskel.params import PipelineParams as PipelineParams
     from tiskel.params import PlanParams as PlanParams
@@ -80,6 +81,8 @@ if TYPE_CHECKING:
     from tiskel.slicing.fitted import Surfaces as Surfaces
     from tiskel.surfaces.patches import BodySurface as BodySurface
     from tiskel.surfaces.patches import Trust as Trust
+    from tiskel.viewer.show import View as View
+    from tiskel.viewer.show import view as view
 
 _HOME = {
     "BodyParams": "params",
@@ -97,6 +100,7 @@ _HOME = {
     "Inputs": "rolling.inputs",
     "LbcParams": "params",
     "JoinParams": "params",
+    "LookParams": "params",
     "MetricParams": "params",
     "PipelineParams": "params",
     "PipelineResult": "pipeline",
@@ -122,6 +126,7 @@ _HOME = {
     "TiskelError": "errors",
     "Trajectory": "rolling.trajectory",
     "Trust": "surfaces.patches",
+    "View": "viewer.show",
     "assess_stability": "metrics.stability",
     "condition": "preprocess.conditioning",
     "contract": "contraction",
@@ -145,6 +150,7 @@ _HOME = {
     "run_pipeline": "pipeline",
     "shape_graph": "gallery.make",
     "split_cloud": "io.split",
+    "view": "viewer.show",
     "write_contraction": "io.stages.contraction",
     "write_skeleton": "io.exports",
     "write_surfaces": "io.stages.surface",

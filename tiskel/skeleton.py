@@ -8,6 +8,8 @@ import numpy as np
 if TYPE_CHECKING:
     import networkx
 
+    from tiskel import View
+
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
@@ -92,6 +94,15 @@ class Skeleton(CurveGraph):
         :func:`tiskel.geometry.branch_table.branch_table`.
         """
         return branch_table(self, getattr(self.params, "root", None))
+
+    def view(self, *more: Any, up: str = "auto", unit: str = "") -> "View":
+        """Return it as something to look at, with other things: ``.save("look.html")``; see :func:`tiskel.view`."""
+        from tiskel import view
+
+        return view(self, *more, up=up, unit=unit)
+
+    def _repr_html_(self) -> str:
+        return str(self.view()._repr_html_())
 
     def to_networkx(self) -> "networkx.Graph":
         """Return a networkx.Graph.

@@ -8,6 +8,7 @@ published tables.
 
 from tiskel.params.body import BodyParams
 from tiskel.params.conditioning import ConditioningParams, NoiseKind
+from tiskel.params.look import UPS, LookParams, Up
 from tiskel.params.methods import (
     MIN_POINTS,
     SIDE,
@@ -42,6 +43,7 @@ from tiskel.params.tiles import JoinParams, Parts, SplitParams
 __all__ = [
     "MIN_POINTS",
     "SIDE",
+    "UPS",
     "Bars",
     "BetaRule",
     "BodyParams",
@@ -52,6 +54,7 @@ __all__ = [
     "JoinParams",
     "LaplacianParams",
     "LbcParams",
+    "LookParams",
     "MaxPoints",
     "Method",
     "MetricParams",
@@ -76,6 +79,7 @@ __all__ = [
     "SurfaceParams",
     "Topology",
     "Twist",
+    "Up",
     "Variant",
     "known_settings",
     "params_class",
