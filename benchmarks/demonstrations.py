@@ -21,7 +21,8 @@ from tiskel.geometry.ellipse import fit_ellipse
 from tiskel.metrics.barcode import barcode
 from tiskel.metrics.distances import bottleneck
 from tiskel.metrics.smoothness import point_smoothness
-from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
+from tiskel.pictures.canvas import Sight, cloud_panel, new_figure, rendered, sight_of
+from tiskel.pictures.style import CURVE, INK, POINTS
 
 OUT = Path(__file__).parent / "demonstrations"
 SHAPES = ("capsule", "torus", "y")
@@ -90,9 +91,9 @@ def bars_picture() -> bytes:
     panels = figure.subplots(len(SHAPES), 4)
     for row, name in zip(panels, SHAPES, strict=True):
         *clouds, found = bars(name)
-        view = broad_view(clouds[0])
+        view = sight_of(clouds[0]).view
         for panel, points, title in zip(row, clouds, ("whole", "cut", "bent"), strict=False):
-            cloud_panel(panel, points, view)
+            cloud_panel(panel, Sight(points, view))
             panel.set_title(f"{name}, {title}", fontsize=9)
         drawn = ((found.whole, INK, "whole"), (found.cut, CURVE, "cut"), (found.bent, POINTS, "bent"))
         for values, colour, title in drawn:

@@ -5,9 +5,10 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tiskel.cli import method_options, options, surface_options
+from tiskel.cli import look_options, method_options, options, surface_options
 from tiskel.cli.console import begin, end
 from tiskel.cli.options import CONDITIONING
+from tiskel.params import LookParams
 
 Command = Callable[..., None]
 
@@ -41,6 +42,11 @@ ROLLING: dict[str, tuple[Any, Any]] = {
     "atol": (surface_options.Atol, surface_options.ROLL.atol),
 }
 
+LOOKING: dict[str, tuple[Any, Any]] = {
+    "up": (look_options.UpAxis, look_options.LOOK.up),
+    "unit": (look_options.Unit, look_options.LOOK.unit),
+}
+
 
 def common(command: Command) -> Command:
     """Add --threads, --quiet, --verbose, --strict and --log, and act on them before and after the command runs."""
@@ -61,6 +67,16 @@ def reads_cloud(command: Command) -> Command:
         command(**arguments, conditioning=conditioning)
 
     return _with_options(command, run, INPUT, drop=("conditioning",))
+
+
+def looks(command: Command) -> Command:
+    """Add the options of pictures and hand them to the command as one object called look."""
+
+    def run(**arguments: Any) -> None:
+        look = LookParams(**{name: arguments.pop(name) for name in LOOKING})
+        command(**arguments, look=look)
+
+    return _with_options(command, run, LOOKING, drop=("look",))
 
 
 def contracts(command: Command) -> Command:

@@ -6,22 +6,26 @@ from typing import Any
 from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
-from tiskel.cli.common import common, contracts, reads_cloud
+from tiskel.cli.common import common, contracts, looks, reads_cloud
 from tiskel.cli.progress import reading, shown
+from tiskel.params import LookParams
 
 
 @common
 @reads_cloud
 @contracts
+@looks
 def contract(
     source: o.Source,
     output: o.Output = None,
     method: o.MethodName = o.METHOD,
     weights: o.Weights = None,
     history: o.History = False,
+    plot: o.Plot = None,
     *,
     conditioning: Mapping[str, Any],
     contracting: Mapping[str, Any],
+    look: LookParams,
 ) -> None:
     """Contract a cloud or mesh towards its medial curve.
 
@@ -42,4 +46,10 @@ def contract(
         surface, weighted = still_on(cloud.surface, points, cloud.points), stages.weights_of(cloud, weights)
         contraction = contract_cloud(points, params, weighted, surface, progress=progress)
     stages.tell_contraction(contraction)
+    if plot is not None:
+        from tiskel.pictures.canvas import picture_kind
+        from tiskel.pictures.contraction import contraction_picture
+
+        title = f"{cloud.name}, {params.method}"
+        stages.write(plot, lambda: contraction_picture(contraction, title, picture_kind(str(plot)), look))
     stages.write(target, lambda: dump_contraction(contraction, cloud.source, history=history))

@@ -9,10 +9,10 @@ import typer
 
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
-from tiskel.cli.common import common
+from tiskel.cli.common import common, looks
 from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
-from tiskel.params import Bars, BetaRule, MetricParams, Normalisation
+from tiskel.params import Bars, BetaRule, LookParams, MetricParams, Normalisation
 
 if TYPE_CHECKING:
     from tiskel.arrays import Points
@@ -101,6 +101,7 @@ HeatFile = Annotated[
 
 
 @common
+@looks
 def metrics(
     sources: Sources = None,
     cloud: CloudFile = None,
@@ -118,6 +119,8 @@ def metrics(
     as_csv: AsCsv = False,
     heat: HeatFile = None,
     plot: o.Plot = None,
+    *,
+    look: LookParams,
 ) -> None:
     """Say how good skeletons are: topology, boundedness, inside, medialness, air, centredness and more.
 
@@ -136,7 +139,7 @@ def metrics(
     if heat is not None and len(given) > 1:
         raise TiskelError(f"--ply holds one skeleton, {len(given)} are given; measure them one by one")
     measured = [_measure(source, cloud, points, curve, params) for source in given]
-    _write_extras(measured, heat, plot)
+    _write_extras(measured, heat, plot, look)
     _show(measured, as_json, as_csv)
 
 
@@ -162,7 +165,7 @@ def _measure(
     return m.name, m.cloud, quality
 
 
-def _write_extras(measured: list[Measured], heat: Path | None, plot: Path | None) -> None:
+def _write_extras(measured: list[Measured], heat: Path | None, plot: Path | None, look: LookParams) -> None:
     if heat is not None:
         from tiskel.io.stages.heat import dump_heat
 
@@ -171,7 +174,7 @@ def _write_extras(measured: list[Measured], heat: Path | None, plot: Path | None
         from tiskel.pictures.canvas import picture_kind
         from tiskel.pictures.quality import quality_picture
 
-        stages.write(plot, lambda: quality_picture(measured, picture_kind(str(plot))))
+        stages.write(plot, lambda: quality_picture(measured, picture_kind(str(plot)), look))
 
 
 def document(name: str, quality: "Quality") -> dict[str, Any]:

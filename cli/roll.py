@@ -12,11 +12,14 @@ from tiskel.cli import body_options as bo
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
-from tiskel.cli.common import common
+from tiskel.cli.common import common, looks
 from tiskel.cli.progress import reading, shown
+from tiskel.errors import TiskelError
+from tiskel.params import LookParams
 
 if TYPE_CHECKING:
     from tiskel.rolling.trajectory import Trajectory
+    from tiskel.slicing.fitted import FittedSurface
 
 POSES = (".tum", ".yaml", ".yml")  # what a trajectory can be written as, besides CSV
 BranchName = Annotated[
@@ -45,6 +48,7 @@ Summary = Annotated[
 
 
 @common
+@looks
 def roll(
     source: o.Source,
     output: o.Output = None,
@@ -71,6 +75,8 @@ def roll(
     as_json: Summary = False,
     plot: o.Plot = None,
     animate: so.Animate = None,
+    *,
+    look: LookParams,
 ) -> None:
     """Roll a sphere over a surface.
 
@@ -106,17 +112,29 @@ def roll(
         from tiskel.pictures.canvas import picture_kind
         from tiskel.pictures.rolling import rolling_picture
 
-        stages.write(plot, lambda: rolling_picture(surface, runs, source.name, picture_kind(str(plot))))
+        stages.write(plot, lambda: rolling_picture(surface, runs, source.name, picture_kind(str(plot)), look))
     if animate is not None:
-        from tiskel.pictures.animation import animation
-        from tiskel.pictures.canvas import picture_kind
-
-        stages.write(animate, lambda: animation(surface, runs[0], picture_kind(str(animate))))
+        stages.write(animate, lambda: _film(surface, runs, str(animate), look))
     if as_json:
         typer.echo(json.dumps(summary(getattr(surface, "name", "body"), runs), allow_nan=False))
     if output is not None or not as_json:
         stages.write(target, lambda: as_suffixed(str(target), runs))
     return None
+
+
+def _film(surface: "FittedSurface", runs: "Sequence[Trajectory]", target: str, look: LookParams) -> bytes:
+    """Return a film of the first run, or a page with all of them, by the suffix."""
+    kind = target.rpartition(".")[2].lower()
+    if kind == "gif":
+        from tiskel.pictures.animation import animation
+
+        return animation(surface, runs[0], look)
+    if kind != "html":
+        raise TiskelError(f"an animation cannot be written as {kind!r}; choose one of gif, html")
+    from tiskel import view
+
+    shown = view(surface.cloud, surface, *runs, up=look.up, unit=look.unit, title=f"branch {surface.name}, rolling")
+    return shown.html().encode()
 
 
 def summary(branch: str, runs: "Sequence[Trajectory]") -> dict[str, Any]:

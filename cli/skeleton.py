@@ -10,10 +10,10 @@ import typer
 from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
-from tiskel.cli.common import common, curves
+from tiskel.cli.common import common, curves, looks
 from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
-from tiskel.params import SkeletonParams
+from tiskel.params import LookParams, SkeletonParams
 
 Format = Literal["ply", "obj", "swc", "graphml", "json", "node-link.json", "vtp", "dxf", "graph", "csv"]
 
@@ -42,14 +42,17 @@ Branches = Annotated[
 
 @common
 @curves
+@looks
 def skeleton(
     source: o.Source,
     output: o.Output = None,
     format_name: FormatName = None,
     branches: Branches = None,
     as_json: o.Summary = False,
+    plot: o.Plot = None,
     *,
     curving: Mapping[str, Any],
+    look: LookParams,
 ) -> None:
     """Turn a contracted cloud into a curve skeleton.
 
@@ -74,6 +77,11 @@ def skeleton(
         data = read_bytes(source)
         made = extract_skeleton(parse_contraction(data, str(source)), params, progress=progress)
     console.tell(messages.of_skeleton(made))
+    if plot is not None:
+        from tiskel.pictures.canvas import picture_kind
+        from tiskel.pictures.skeleton import skeleton_picture
+
+        stages.write(plot, lambda: skeleton_picture(made, source.name, picture_kind(str(plot)), look))
     if chosen == "ply":
         stages.write(target, lambda: dump_skeleton(made, source_of(data, "contraction", str(source))))
     else:

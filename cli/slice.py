@@ -9,9 +9,10 @@ from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
-from tiskel.cli.common import common
+from tiskel.cli.common import common, looks
 from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
+from tiskel.params import LookParams
 
 if TYPE_CHECKING:
     from tiskel.params import SurfaceParams
@@ -59,6 +60,7 @@ TableFile = Annotated[
 
 
 @common
+@looks
 def slice_command(
     source: o.Source,
     output: o.Output = None,
@@ -74,6 +76,8 @@ def slice_command(
     caps: Caps = False,
     table: TableFile = None,
     plot: o.Plot = None,
+    *,
+    look: LookParams,
 ) -> None:
     """Fit a smooth surface around every branch of a skeleton, slice by slice, and one surface to the whole body.
 
@@ -106,7 +110,7 @@ def slice_command(
         from tiskel.pictures.canvas import picture_kind
         from tiskel.pictures.slices import slices_picture
 
-        stages.write(plot, lambda: slices_picture(surfaces, source.name, picture_kind(str(plot))))
+        stages.write(plot, lambda: slices_picture(surfaces, source.name, picture_kind(str(plot)), look))
     stages.write(target, lambda: dump_surfaces(surfaces, params, origin))
 
 

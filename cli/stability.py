@@ -9,9 +9,9 @@ import typer
 from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
-from tiskel.cli.common import common
+from tiskel.cli.common import common, looks
 from tiskel.cli.progress import reading, shown
-from tiskel.params import Orientation, StabilityParams
+from tiskel.params import LookParams, Orientation, StabilityParams
 
 if TYPE_CHECKING:
     from tiskel.metrics.stability import Stability
@@ -29,8 +29,14 @@ NormalsRule = Annotated[
 
 
 @common
+@looks
 def stability(
-    source: o.Source, normals: NormalsRule = StabilityParams.normals, as_json: o.AsJson = False, plot: o.Plot = None
+    source: o.Source,
+    normals: NormalsRule = StabilityParams.normals,
+    as_json: o.AsJson = False,
+    plot: o.Plot = None,
+    *,
+    look: LookParams,
 ) -> None:
     """Say whether a contraction is stable: how normals and curvatures change from step to step.
 
@@ -48,7 +54,7 @@ def stability(
         from tiskel.pictures.stability import stability_picture
 
         title = f"{source.name}, {contraction.params.method}"
-        stages.write(plot, lambda: stability_picture(contraction, result, title, picture_kind(str(plot))))
+        stages.write(plot, lambda: stability_picture(contraction, result, title, picture_kind(str(plot)), look))
     if as_json or not sys.stdout.isatty():
         method = contraction.params.method
         typer.echo(json.dumps({"file": source.name, "method": method, **result.as_dict()}, allow_nan=False))

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -98,8 +99,8 @@ def test_every_file_of_roll_is_written(tiskel: Runner, skeleton: Path, tmp_path:
     assert [row["model"] for row in rows].count("local") == 21
     assert b"<svg" in (tmp_path / "p.svg").read_bytes()
     page = (tmp_path / "a.html").read_text()
-    assert '"rotation"' in page
-    assert "http" not in page
+    assert '"kind":"path"' in page
+    assert not re.findall(r'(?:src|href)="(?!data:)', page)
     assert tiskel("roll", "f.json", "-o", "t.csv", "--duration", 0.3, "--animate", "a.gif").returncode == 0
     assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
     wrong = tiskel("roll", "f.json", "-o", "t.csv", "--animate", "a.mp4")

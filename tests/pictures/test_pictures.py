@@ -42,7 +42,7 @@ drawn = {
     "slices.png": slices_picture(surfaces, "capsule"),
     **{f"empty.{kind}": rendered(new_figure(1, 1), kind) for kind in ("svg", "pdf")},
     "rolling.png": rolling_picture(surfaces[0], [run], "capsule"),
-    "film.gif": animation(surfaces[0], run, "gif"),
+    "film.gif": animation(surfaces[0], run),
 }
 starts = {"png": b"\\x89PNG", "svg": b"<?xml", "pdf": b"%PDF", "gif": b"GIF8"}
 assert all(data.startswith(starts[name[-3:]]) for name, data in drawn.items())

@@ -9,7 +9,7 @@ Which axis is up, ``auto``: z, as scanners, maps and robots have it; but y where
 the cloud stands on y = 0 and not on z = 0, as models made for graphics do.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from tiskel.params.look import Up
 
 AXES = "xyz"
 FRAMES = {"z": ((0, 1), (1, 1)), "y": ((0, 1), (2, -1)), "x": ((1, 1), (2, 1))}  # a and b: axis and sign
+OPPOSITE = {"front": "back", "side": "other side", "top": "bottom"}
 # By reasoning, unit-free: feet of a model that was set on the ground are within a hundredth of its height.
 GROUND = 0.01  # share of the height between the lowest point and 0
 # By looking: a quarter turn shows a second side, a low sun's height keeps what stands upright.
@@ -31,7 +32,7 @@ class View:
     Attributes
     ----------
     name : str
-        "front", "side" or "top".
+        "front", "side" or "top", or "back", "other side" or "bottom".
     axes : (int, int)
         The input's axes that run across and up.
     signs : (int, int)
@@ -57,6 +58,18 @@ class View:
     def labels(self) -> tuple[str, str]:
         """The names of the axes that run across and up."""
         return AXES[self.axes[0]], AXES[self.axes[1]]
+
+    @property
+    def up(self) -> str:
+        """The axis that points up in the pictures that this view belongs to, whatever it shows upwards itself."""
+        return AXES[self.towards[0] if self.name in ("top", OPPOSITE["top"]) else self.axes[1]]
+
+    def behind(self) -> "View":
+        """Return the view from the other end of its axis."""
+        axis, sign = self.towards
+        return replace(
+            self, name=OPPOSITE[self.name], signs=(-self.signs[0], self.signs[1]), towards=(axis, -sign)
+        )  # fmt: skip
 
     def flat(self, points: Points) -> Points:
         """Return (n, 2) the input's own coordinates across and up, whichever way they run."""

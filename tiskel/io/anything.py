@@ -11,7 +11,8 @@ from tiskel.arrays import Edges, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.io import ply
-from tiskel.io.clouds import Cloud, parse_cloud, unpacked
+from tiskel.io.clouds import Cloud, parse_cloud
+from tiskel.io.limits import unpacked
 from tiskel.io.curves import Curve, parse_curve
 from tiskel.io.formats import format_of
 from tiskel.io.stages.contraction import parse_contraction

@@ -8,14 +8,19 @@ import numpy as np
 from tiskel.arrays import Numbers, Points, finite_rows
 from tiskel.geometry.strays import body_of
 from tiskel.metrics.result import Quality
-from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, heat, new_figure, rendered
+from tiskel.params import LookParams
+from tiskel.pictures.canvas import Sight, cloud_panel, heat, new_figure, rendered, sight_of
+from tiskel.pictures.style import CURVE, INK, POINTS, SCALE
 
-COLUMNS, WIDTH, HEIGHT = 4, 14.0, 3.1  # inches; of one row
+COLUMNS, WIDTH, HEIGHT = 4, 14.0, 2.9  # inches; of a row of histograms
+COLUMN, HEAD, LOWEST = 2.7, 0.7, 2.2  # inches: width of a panel, what its title and axis take, least height of a row
 BINS = np.linspace(0, 1, 26)
 MEASURES = ("boundedness", "centredness", "smoothness")
 
 
-def quality_picture(qualities: Sequence[tuple[str, Points, Quality]], kind: str = "png") -> bytes:
+def quality_picture(
+    qualities: Sequence[tuple[str, Points, Quality]], kind: str = "png", look: LookParams | None = None
+) -> bytes:
     """Return a picture of skeletons: barcodes, heat maps of points and curve, histograms.
 
     Parameters
@@ -24,27 +29,37 @@ def quality_picture(qualities: Sequence[tuple[str, Points, Quality]], kind: str 
         The name, the cloud and the measures of each.
     kind : "png", "svg" or "pdf"
         The format.
+    look : LookParams, optional
+        Which axis points up, and the unit of length.
 
     Returns
     -------
     bytes
     """
-    figure = new_figure(WIDTH, 3 * HEIGHT * len(qualities))
-    panels = figure.subplots(3 * len(qualities), COLUMNS, squeeze=False)
-    for number, (name, given, quality) in enumerate(qualities):
-        cloud = body_of(given[finite_rows(given)])
+    sights = [sight_of(body_of(given[finite_rows(given)]), look) for _, given, _ in qualities]
+    tall = [height for sight in sights for height in _heights(sight)]
+    figure = new_figure(WIDTH, sum(tall))
+    panels = figure.subplots(3 * len(qualities), COLUMNS, squeeze=False, height_ratios=tall)
+    for number, (name, _, quality) in enumerate(qualities):
+        sight = sights[number]
         rows = panels[3 * number : 3 * number + 3]
-        view = broad_view(cloud)
-        _curve(rows[0][0], name, cloud, quality, view)
+        _curve(rows[0][0], name, quality, sight)
         _barcode(rows[1][0], quality)
         _loops(rows[2][0], quality)
         places = None if quality.points is None else quality.points.points
         values = values_of_points(quality), values_of_curve(quality)
         for column, measure in enumerate(MEASURES, 1):
-            _heat(figure, rows[0][column], cloud, places, values[0], measure, "skeletal points", view)
-            _heat(figure, rows[1][column], cloud, _curve_places(quality, measure), values[1], measure, "curve", view)
+            _heat(rows[0][column], sight, places, values[0], measure, "skeletal points")
+            _heat(rows[1][column], sight, _curve_places(quality, measure), values[1], measure, "curve")
             _histogram(rows[2][column], [v.get(measure) for v in values], measure)
+        _scale(figure, rows[:2].ravel().tolist())
     return rendered(figure, kind)
+
+
+def _heights(sight: Sight) -> tuple[float, float, float]:
+    """Return the heights of the three rows, in inches."""
+    body = COLUMN * sight.ratio + HEAD
+    return body, max(body, LOWEST), HEIGHT
 
 
 Values = dict[str, Numbers]
@@ -73,14 +88,21 @@ def _curve_places(quality: Quality, measure: str) -> Points | None:
     return c.nodes[c.vertices] if measure == "smoothness" else c.samples.points
 
 
-def _heat(
-    figure: Any, panel: Any, cloud: Points, places: Points | None, values: Values, measure: str, of: str, view: Points
-) -> None:
-    cloud_panel(panel, cloud, view)
+def _heat(panel: Any, sight: Sight, places: Points | None, values: Values, measure: str, of: str) -> None:
+    cloud_panel(panel, sight, small=True)
     panel.set_title(f"{measure} of {of}", fontsize=9)
     if places is not None:
-        drawn = heat(panel, places, values[measure], view, size=5 if of != "curve" else 14)
-        figure.colorbar(drawn, ax=panel, shrink=0.8)
+        heat(panel, places, values[measure], sight, size=3 if of != "curve" else 8)
+
+
+def _scale(figure: Any, panels: list[Any]) -> None:
+    """Draw the one colour bar of all measures."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), SCALE), ax=panels, shrink=0.7, pad=0.01, aspect=25)
+    bar.set_label("0 worst, 1 best; crosses: no value", fontsize=8)
+    bar.ax.tick_params(labelsize=7)
 
 
 def _histogram(panel: Any, values: Sequence[Numbers | None], measure: str) -> None:
@@ -123,10 +145,10 @@ def _loops(panel: Any, quality: Quality) -> None:
     panel.set_xlabel("loops: surface {}, solid {}, curve {}".format(*said), fontsize=8)
 
 
-def _curve(panel: Any, name: str, cloud: Points, quality: Quality, view: Points) -> None:
-    cloud_panel(panel, cloud, view)
+def _curve(panel: Any, name: str, quality: Quality, sight: Sight) -> None:
+    cloud_panel(panel, sight, small=True)
     panel.set_title(name, fontsize=10, fontweight="bold")
     c = quality.curve
     if c is not None:
         for a, b in c.edges:
-            panel.plot(*(c.nodes[[a, b]] @ view.T).T, color=CURVE, linewidth=1.4)
+            panel.plot(*sight.flat(c.nodes[[a, b]]).T, color=CURVE, linewidth=1.4)

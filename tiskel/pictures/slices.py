@@ -5,22 +5,27 @@ from typing import Any
 
 import numpy as np
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import Numbers
 from tiskel.geometry.strays import body_of
-from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
+from tiskel.params import LookParams
+from tiskel.pictures.canvas import Sight, cloud_panel, named, new_figure, rendered, sight_of, with_unit
+from tiskel.pictures.style import CURVE, INK, POINTS
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.slicing.rings import around
 from tiskel.slicing.sections import Case
 from tiskel.surfaces.tube import V_STOP
 
-WIDTH, HEIGHT = 14.0, 4.2  # inches, of one row
+WIDTH, WIDE, HEIGHT, HEAD = 15.0, 4.4, 3.0, 0.9  # inches: all, a panel of the body, of a section, titles
 TURN = np.linspace(0, 2 * np.pi, 121)
 RINGS, LINES = 40, 12  # drawn around and along
+LEGEND = (("slice", POINTS, "-"), ("slice, bridged", INK, ":"), ("curve, series", CURVE, "-"), ("points", POINTS, "o"))
 TITLE = 56  # letters in a line over a panel
 MOST = 6  # surfaces that get a row of their own
 
 
-def slices_picture(surfaces: Surfaces, title: str, kind: str = "png") -> bytes:
+def slices_picture(
+    surfaces: Surfaces, title: str, kind: str = "png", look: LookParams | None = None
+) -> bytes:  # fmt: skip
     """Return a picture of the longest surfaces: slices, a section in polar and Cartesian form, the surface; a row each.
 
     Parameters
@@ -31,39 +36,43 @@ def slices_picture(surfaces: Surfaces, title: str, kind: str = "png") -> bytes:
         The name of the cloud.
     kind : "png", "svg" or "pdf"
         The format.
+    look : LookParams, optional
+        Which axis points up, and the unit of length.
 
     Returns
     -------
     bytes
     """
     longest = sorted(surfaces, key=lambda s: -s.length)[:MOST]
-    body = body_of(longest[0].cloud)
-    figure = new_figure(WIDTH, HEIGHT * len(longest) + 0.4)
-    grid = figure.add_gridspec(len(longest), 4)
+    body = sight_of(body_of(longest[0].cloud), look)
+    figure = new_figure(WIDTH, max(HEIGHT, WIDE * body.ratio + HEAD) * len(longest) + 0.4)
+    grid = figure.add_gridspec(len(longest), 4, width_ratios=(WIDE, HEIGHT, HEIGHT, WIDE))
     for row, surface in enumerate(longest):
-        cloud = body if surface.cloud is longest[0].cloud else body_of(surface.cloud)
-        view = broad_view(cloud)
-        _slices(figure.add_subplot(grid[row, 0]), surface, cloud, view)
-        _section(figure.add_subplot(grid[row, 1], projection="polar"), figure.add_subplot(grid[row, 2]), surface)
-        _surface(figure.add_subplot(grid[row, 3]), surface, cloud, view)
+        sight = body if surface.cloud is longest[0].cloud else sight_of(body_of(surface.cloud), look)
+        _slices(figure.add_subplot(grid[row, 0]), surface, sight)
+        _section(figure.add_subplot(grid[row, 1], projection="polar"), figure.add_subplot(grid[row, 2]), surface, sight)
+        _surface(figure.add_subplot(grid[row, 3]), surface, sight)
+    named(figure, LEGEND)
     more = "" if len(longest) == len(surfaces) else f", the {MOST} longest of {len(surfaces)} surfaces"
     figure.suptitle(f"{title}{more}", fontsize=10)
     return rendered(figure, kind)
 
 
-def _slices(panel: Any, s: FittedSurface, cloud: Points, view: Points) -> None:
+def _slices(panel: Any, s: FittedSurface, sight: Sight) -> None:
     """Draw the outline of every slice, those that were bridged dashed, and the skeleton curve."""
-    cloud_panel(panel, cloud, view)
+    cloud_panel(panel, sight, small=True)
     for section in s.sections:
         fitted = section.case is Case.FITTED
         ring = np.stack(s.jet(TURN, np.full(len(TURN), section.v)).f, axis=1)
-        panel.plot(*(ring @ view.T).T, color=POINTS if fitted else INK, linewidth=0.6, linestyle="-" if fitted else ":")
-    panel.plot(*(s.tube.curve(np.linspace(0, V_STOP, 200)) @ view.T).T, color=CURVE, linewidth=1.4)
+        panel.plot(
+            *sight.flat(ring).T, color=POINTS if fitted else INK, linewidth=0.6, linestyle="-" if fitted else ":"
+        )
+    panel.plot(*sight.flat(s.tube.curve(np.linspace(0, V_STOP, 200))).T, color=CURVE, linewidth=1.4)
     told = ", ".join(f"{count} {case}" for case, count in s.cases().items())
     panel.set_title(fill(f"branch {s.name}: {told}", TITLE), fontsize=8)
 
 
-def _section(polar: Any, flat: Any, s: FittedSurface) -> None:
+def _section(polar: Any, flat: Any, s: FittedSurface, sight: Sight) -> None:
     """Draw the fitted section nearest to the middle, its points and its series."""
     fitted = [section for section in s.sections if section.case is Case.FITTED]
     section = min(fitted, key=lambda one: abs(one.v - V_STOP / 2))
@@ -77,7 +86,7 @@ def _section(polar: Any, flat: Any, s: FittedSurface) -> None:
     flat.plot(np.mod(ring.u, 2 * np.pi), ring.r, ".", color=POINTS, markersize=3)
     flat.plot(TURN, r, color=CURVE, linewidth=1.2)
     flat.set_xlabel("u, radians", fontsize=7)
-    flat.set_ylabel("R", fontsize=7)
+    flat.set_ylabel(with_unit("R", sight.unit or "in the cloud's unit"), fontsize=7)
     flat.set_ylim(0, 1.25 * max(float(r.max()), float(ring.r.max(initial=0))))
     flat.tick_params(labelsize=6)
 
@@ -91,16 +100,16 @@ def _places(s: FittedSurface) -> Numbers:
     return around(s.cloud, s.rows, s.tube.axis, s.tube.field, start).v
 
 
-def _surface(panel: Any, s: FittedSurface, cloud: Points, view: Points) -> None:
+def _surface(panel: Any, s: FittedSurface, sight: Sight) -> None:
     """Draw a net of the surface over the points."""
-    cloud_panel(panel, cloud, view)
+    cloud_panel(panel, sight, small=True)
     v = np.linspace(0, V_STOP, 200)
     for place in np.linspace(0, V_STOP, RINGS):
-        panel.plot(*_flat(s, TURN, np.full(len(TURN), place), view), color=INK, linewidth=0.3)
+        panel.plot(*_flat(s, TURN, np.full(len(TURN), place), sight), color=INK, linewidth=0.3)
     for turn in np.linspace(0, 2 * np.pi, LINES, endpoint=False):
-        panel.plot(*_flat(s, np.full(len(v), turn), v, view), color=INK, linewidth=0.3)
+        panel.plot(*_flat(s, np.full(len(v), turn), v, sight), color=INK, linewidth=0.3)
     panel.set_title(f"surface: misfit {s.error:.2%} of the radius", fontsize=8)
 
 
-def _flat(s: FittedSurface, u: Any, v: Any, view: Points) -> Any:
-    return (np.stack(s.jet(u, v).f, axis=1) @ view.T).T
+def _flat(s: FittedSurface, u: Any, v: Any, sight: Sight) -> Any:
+    return sight.flat(np.stack(s.jet(u, v).f, axis=1)).T

@@ -1,5 +1,6 @@
 """The steps of a contraction: histograms, and the contracted cloud under each."""
 
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -7,12 +8,17 @@ import numpy as np
 from tiskel.contraction import Contraction
 from tiskel.metrics.distributions import SPAN
 from tiskel.metrics.stability import Stability, StepStability
-from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
+from tiskel.params import LookParams
+from tiskel.pictures.canvas import cloud_panel, named, new_figure, rendered, sight_of
+from tiskel.pictures.style import CLOUD, CURVE, INK, POINTS
 
-WIDTH, HEIGHT, TITLE = 3.2, 2.9, 0.4  # inches per panel
+WIDTH, ALONE, HEIGHT, HEAD, TITLE = 3.4, 6.4, 2.6, 0.3, 0.8  # inches per panel; of a single step; titles
+LETTERS = 15  # of the title in an inch
 
 
-def stability_picture(contraction: Contraction, stability: Stability, title: str, kind: str = "png") -> bytes:
+def stability_picture(
+    contraction: Contraction, stability: Stability, title: str, kind: str = "png", look: LookParams | None = None
+) -> bytes:
     """Return a column per step: turns of the normals, changes of curvature, the contracted points in their cloud.
 
     Parameters
@@ -25,22 +31,27 @@ def stability_picture(contraction: Contraction, stability: Stability, title: str
         The name of the cloud.
     kind : "png", "svg" or "pdf"
         The format.
+    look : LookParams, optional
+        Which axis points up, and the unit of length.
 
     Returns
     -------
     bytes
     """
     count = len(stability.steps)
-    figure = new_figure(max(2, count) * WIDTH, 3 * HEIGHT + TITLE)
-    panels = figure.subplots(3, count, squeeze=False)
-    cloud = contraction.cloud[~contraction.strays]
-    view = broad_view(cloud)
+    sight = sight_of(contraction.cloud[~contraction.strays], look)
+    wide = WIDTH if count > 1 else ALONE
+    tall = (HEIGHT, HEIGHT, wide * sight.ratio + HEAD)
+    figure = new_figure(count * wide, sum(tall) + TITLE)
+    panels = figure.subplots(3, count, squeeze=False, height_ratios=tall)
     for number, (step, positions) in enumerate(zip(stability.steps, contraction.history, strict=True)):
         _angles(panels[0][number], step, number + 1)
         _curvatures(panels[1][number], step)
-        cloud_panel(panels[2][number], cloud, view)
-        panels[2][number].scatter(*(positions @ view.T).T, s=1.5, c=CURVE, linewidths=0)
-    figure.suptitle(f"{title}: {'stable' if stability.stable else 'not stable'}: {stability.reason}", fontsize=9)
+        cloud_panel(panels[2][number], sight, small=True)
+        panels[2][number].scatter(*sight.flat(positions).T, s=1.5, c=CURVE, linewidths=0, rasterized=True)
+    named(figure, (("cloud", CLOUD, "o"), ("contracted", CURVE, "o"), ("even over a curve", INK, "--")))
+    verdict = f"{title}: {'stable' if stability.stable else 'not stable'}: {stability.reason}"
+    figure.suptitle(fill(verdict, int(LETTERS * count * wide)), fontsize=9)
     return rendered(figure, kind)
 
 

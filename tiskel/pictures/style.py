@@ -16,7 +16,15 @@ ROLES = {
     "warning": "#b3261e", "note": "#8a5a00", "path": CURVE, "ball": "#e9b48c", "end": "#e69f00", "joint": INK,
 }  # fmt: skip
 SCALE = "viridis"  # of values from 0 to 1: dark is bad, bright is good
-SIZES = {"title": 10.0, "head": 9.0, "text": 8.0, "ticks": 7.0, "dots": 3.0, "places": 6.0}  # points; dots in points^2
+SIZES = {
+    "title": 10.0,
+    "head": 9.0,
+    "text": 8.0,
+    "ticks": 7.0,
+    "dots": 3.0,
+    "places": 6.0,
+    "knots": 20.0,
+}  # points; marks in points^2
 FADE = 0.62  # how much of the background is mixed into what is farthest away: the depth cue
 
 
