@@ -1,6 +1,8 @@
 """``tiskel run``."""
 
 import json
+import shlex
+import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,10 +14,10 @@ from tiskel import messages
 from tiskel.cli import console, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
-from tiskel.cli.common import common, contracts, curves, reads_cloud, rolls
+from tiskel.cli.common import common, contracts, curves, looks, reads_cloud, rolls
 from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
-from tiskel.params import PipelineParams, SkeletonParams, SurfaceParams
+from tiskel.params import LookParams, PipelineParams, SkeletonParams, SurfaceParams
 
 if TYPE_CHECKING:
     from tiskel.pipeline import Finished
@@ -30,6 +32,7 @@ Folder = Annotated[
 @contracts
 @curves
 @rolls
+@looks
 def run(
     source: o.Source,
     output: Folder,
@@ -43,6 +46,7 @@ def run(
     contracting: Mapping[str, Any],
     curving: Mapping[str, Any],
     rolling: Mapping[str, Any],
+    look: LookParams,
 ) -> None:
     """Do everything in one go: stage files, exports, measures, surfaces, a roll, pictures and a report in one folder.
 
@@ -62,7 +66,8 @@ def run(
         cloud = stages.read_cloud(source, params.conditioning)
         read = time.perf_counter()
         from tiskel import run_pipeline
-        from tiskel.cli.run_files import files_of, pictures_of
+        from tiskel.cli.run_files import files_of, pictures_of, report_of
+        from tiskel.report.page import RunFacts
 
         weighted = stages.weights_of(cloud, weights)
         result = run_pipeline(
@@ -70,15 +75,21 @@ def run(
         )
     drawing = time.perf_counter()
     with shown("pictures"):
-        pictures = pictures_of(result, cloud)
+        pictures = pictures_of(result, cloud, look)
     seconds = {"read": read - start, **result.seconds, "pictures": time.perf_counter() - drawing}
     files = files_of(result, cloud, history=history) | pictures
     files["timings.json"] = (json.dumps(seconds, indent=1) + "\n").encode
+    told = [("read", messages.warned(cloud.warnings)), *((done.part, done.messages) for done in parts)]
+    facts = RunFacts(
+        name=cloud.name, sha256=cloud.sha256, command=shlex.join(["tiskel", *sys.argv[1:]]),
+        told=[("read", messages.said(cloud.notes) + told[0][1]), *told[1:]], seconds=seconds, look=look,
+        files=tuple(files),
+    )  # fmt: skip
+    files |= report_of(result, facts, pictures)
     for name, make in files.items():
         stages.write(output / name, make)
     console.say(f"wrote {', '.join(files)} to {output}")
     if as_json:
-        told = [("read", messages.warned(cloud.warnings)), *((done.part, done.messages) for done in parts)]
         typer.echo(json.dumps(messages.document_of_run(cloud.name, result.skeleton, told), allow_nan=False))
 
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from tiskel.cli.report import report
 from tiskel.cli.roll import summary
 from tiskel.cli.slice import slices_csv
 from tiskel.io.clouds import Cloud
@@ -16,12 +15,14 @@ from tiskel.io.stages.heat import dump_heat
 from tiskel.io.stages.roll import to_csv
 from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.io.stages.surface import dump_surfaces
+from tiskel.params import LookParams
 from tiskel.pictures.quality import quality_picture
 from tiskel.pictures.rolling import rolling_picture
 from tiskel.pictures.skeleton import skeleton_picture
 from tiskel.pictures.slices import slices_picture
 from tiskel.pictures.stability import stability_picture
 from tiskel.pipeline import PipelineResult
+from tiskel.report.page import RunFacts, report
 from tiskel.rolling.over import ground_of
 from tiskel.slicing.body_mesh import mesh_of
 
@@ -29,7 +30,7 @@ Files = dict[str, Callable[[], bytes]]
 
 
 def files_of(result: PipelineResult, cloud: Cloud, *, history: bool) -> Files:
-    """Return stage files, exports, documents and the report, by name."""
+    """Return stage files, exports and documents, by name."""
     c, s, source = result.contraction, result.skeleton, cloud.source
     return {
         "contraction.ply": lambda: dump_contraction(c, source, history=history),
@@ -42,7 +43,6 @@ def files_of(result: PipelineResult, cloud: Cloud, *, history: bool) -> Files:
         "metrics.json": lambda: _document(result.quality.as_dict()),
         "stability.json": lambda: _document(result.stability.as_dict()),
         **_roll_documents(result),
-        "report.html": lambda: report(cloud.name, result).encode(),
     }
 
 
@@ -67,19 +67,24 @@ def _roll_documents(result: PipelineResult) -> Files:
     return {"roll.json": lambda: _document(summary(name, runs))}
 
 
-def pictures_of(result: PipelineResult, cloud: Cloud) -> Files:
+def report_of(result: PipelineResult, facts: RunFacts, pictures: Files) -> Files:
+    """Return the page with everything in it, the pictures included."""
+    return {"report.html": lambda: report(result, facts, {name: make() for name, make in pictures.items()}).encode()}
+
+
+def pictures_of(result: PipelineResult, cloud: Cloud, look: LookParams | None = None) -> Files:
     """Draw all pictures and return them by name."""
     c, s, title = result.contraction, result.skeleton, f"{cloud.name}, {result.contraction.params.method}"
     drawn = {
-        "skeleton.png": skeleton_picture(s, title),
-        "metrics.png": quality_picture([(title, s.cloud, result.quality)]),
-        "stability.png": stability_picture(c, result.stability, title),
+        "skeleton.png": skeleton_picture(s, title, look=look),
+        "metrics.png": quality_picture([(title, s.cloud, result.quality)], look=look),
+        "stability.png": stability_picture(c, result.stability, title, look=look),
     }
     if result.surfaces is not None and len(result.surfaces):
-        drawn["slices.png"] = slices_picture(result.surfaces, title)
+        drawn["slices.png"] = slices_picture(result.surfaces, title, look=look)
     if result.surfaces is not None and result.trajectories:
         ground = ground_of(result.surfaces, result.trajectories[0].params)
-        drawn["roll.png"] = rolling_picture(ground, result.trajectories, title)
+        drawn["roll.png"] = rolling_picture(ground, result.trajectories, title, look=look)
     return {name: partial(bytes, data) for name, data in drawn.items()}
 
 

@@ -19,6 +19,7 @@ from tiskel.params.look import Up
 AXES = "xyz"
 FRAMES = {"z": ((0, 1), (1, 1)), "y": ((0, 1), (2, -1)), "x": ((1, 1), (2, 1))}  # a and b: axis and sign
 OPPOSITE = {"front": "back", "side": "other side", "top": "bottom"}
+OPPOSITE |= {other: name for name, other in OPPOSITE.items()}
 # By reasoning, unit-free: feet of a model that was set on the ground are within a hundredth of its height.
 GROUND = 0.01  # share of the height between the lowest point and 0
 # By looking: a quarter turn shows a second side, a low sun's height keeps what stands upright.

@@ -24,6 +24,7 @@ export class World {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener('change', () => this.ask());
+    this.controls.addEventListener('start', () => { this.touched = true; });
     const sun = new DirectionalLight(0xffffff, 2.2);
     this.camera.add(sun);
     sun.position.set(-0.4, 0.8, 1);
@@ -72,6 +73,7 @@ export class World {
     const { left, below } = this.covered;
     this.camera.setViewOffset(clientWidth, clientHeight, -left / 2, below / 2, clientWidth, clientHeight);
     for (const material of this.lineMaterials) material.resolution.set(clientWidth, clientHeight);
+    if (!this.touched && this.sample) this.home(false);
     this.ask();
   }
 
@@ -83,6 +85,7 @@ export class World {
 
   // Look at a box, or at places in it, so that they fill the picture; from where the camera is, or from a direction.
   show(box, from = null, flying = true, places = null) {
+    if (flying) this.touched = true;
     const centre = box.getCenter(new Vector3());
     const back = (from || this.camera.position.clone().sub(this.controls.target)).clone().normalize();
     const right = new Vector3().crossVectors(this.camera.up, back).normalize();
@@ -129,6 +132,7 @@ export class World {
 
   // Turn about the target by angles in radians.
   turn(sideways, upwards) {
+    this.touched = true;
     const offset = this.camera.position.clone().sub(this.controls.target), up = this.camera.up;
     offset.applyAxisAngle(up, -sideways);
     const right = new Vector3().crossVectors(up, offset).normalize();
@@ -139,6 +143,7 @@ export class World {
   }
 
   nearer(factor) {
+    this.touched = true;
     const offset = this.camera.position.clone().sub(this.controls.target).multiplyScalar(factor);
     this.place({ position: offset.add(this.controls.target), target: this.controls.target });
     this.ask();
