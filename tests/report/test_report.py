@@ -10,6 +10,7 @@ from tiskel import PipelineParams, PipelineResult, RollParams, ShapeParams, make
 from tiskel.messages import Message
 from tiskel.metrics.tables import COLUMNS
 from tiskel.params import LookParams, RobustParams
+from tiskel.pictures.canvas import new_figure, rendered
 from tiskel.report.page import RunFacts, report
 from tiskel.report.words import MEASURES
 
@@ -35,7 +36,7 @@ def test_everything_of_a_run_is_said(result: PipelineResult) -> None:
         name="b.ply", sha256="abc123", command="tiskel run b.ply -o out", told=told, look=LookParams(unit="mm"),
         seconds={"contract": 1.25, "contract.rings": 0.5}, files=("skeleton.ply", "roll.json"),
     )  # fmt: skip
-    words = words_of(report(result, facts, {"skeleton.png": b"\x89PNG"}))
+    words = words_of(report(result, facts, {"skeleton.png": rendered(new_figure(1, 1))}))
     wanted = (
         "abc123", "tiskel run b.ply -o out", "doubtful", "1.25 s", "rings 0.50", "length, mm", "neighbours", "13",
         "Other than usual", "skeleton.ply", "roll.json", "ended because", "misfit",
@@ -69,7 +70,7 @@ def test_what_was_left_out_has_no_section(result: PipelineResult) -> None:
 
 
 def test_pictures_are_inside(result: PipelineResult) -> None:
-    page = report(result, RunFacts(name="b.ply"), {"metrics.png": b"\x89PNG"})
+    page = report(result, RunFacts(name="b.ply"), {"metrics.png": rendered(new_figure(1, 1))})
     assert re.findall(r'<img[^>]* src="(?!data:)', page) == []
     assert np.unique(re.findall(r'href="(#?)', page)).size >= 1
     assert not re.search(r'(src|href)="https?:', page)

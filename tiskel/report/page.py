@@ -6,7 +6,7 @@ from importlib.resources import files
 
 from tiskel.messages import Message
 from tiskel.params import LookParams
-from tiskel.pictures.canvas import with_unit
+from tiskel.pictures.canvas import with_palette, with_unit
 from tiskel.pipeline import PipelineResult
 from tiskel.report import markup as m
 from tiskel.report.results import branches, measures, runs, steps, surfaces
@@ -66,7 +66,8 @@ def report(result: PipelineResult, facts: RunFacts, pictures: Mapping[str, bytes
     -------
     str
     """
-    shown, unit = dict(pictures or {}), facts.look.unit
+    shown = {name: with_palette(data) for name, data in (pictures or {}).items()}
+    unit = facts.look.unit
     scene = view(result, up=facts.look.up, unit=facts.look.unit, title=facts.name).scene
     parts = (
         viewer(scene),

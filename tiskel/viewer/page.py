@@ -7,6 +7,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from tiskel.pictures.canvas import with_palette
 from tiskel.viewer.packed import pack
 from tiskel.viewer.scene import Remark, Scene
 from tiskel.viewer.still import still
@@ -57,7 +58,7 @@ def viewer(scene: Scene, *, alone: bool = False) -> str:
         Whether the page holds nothing else; then the wheel always zooms.
     """
     document, data = pack(scene)
-    picture = base64.b64encode(still(scene, "png", STILL_POINTS)).decode()
+    picture = base64.b64encode(with_palette(still(scene, "png", STILL_POINTS))).decode()
     title = html.escape(scene.title)
     return MARKUP.format(
         alone=" data-alone" if alone else "",

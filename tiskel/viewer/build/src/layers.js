@@ -68,10 +68,23 @@ function gridded(grids) {
   return Uint32Array.from(faces);
 }
 
+// All rows in an order in which every beginning is spread over the whole: what is drawn of it while the view moves.
+function shuffled(count) {
+  const order = Uint32Array.from({ length: count }, (_, i) => i);
+  for (let i = count - 1, seed = 1; i > 0; i--) {
+    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0; // Numerical Recipes' generator: the same each time
+    const other = Math.floor((seed / 4294967296) * (i + 1));
+    [order[i], order[other]] = [order[other], order[i]];
+  }
+  return new BufferAttribute(order, 1);
+}
+
 const BUILD = {
   points(layer, world, texture) {
     const size = layer.role === 'cloud' ? (layer.count > 30000 ? 2 : 2.8) : 4;
     layer.dots = flat(layer.places, size, texture);
+    layer.dots.geometry.setIndex(shuffled(layer.count));
+    world.clouds.push(layer.dots.geometry);
     layer.group.add(layer.dots);
     (layer.role === 'cloud' ? world.back : world.front).add(layer.group);
   },

@@ -7,6 +7,8 @@ const FIELD = 30; // degrees; narrow, so that lengths compare across the picture
 const MOST_RATIO = 2; // device pixels per pixel: more costs time and is not seen
 const FADE = 0.7; // how much of the background is mixed into what is farthest away
 const MARGIN = 1.08; // of the distance at which everything just fits
+const SLOW = 50, QUICK = 25, PAUSE = 2000; // milliseconds between pictures: too many, few; it was no movement
+const LEAST_SHARE = 0.05; // of the points that are drawn while the view moves
 const TURN = 250; // milliseconds of a flight
 
 const corners = ({ min, max }) => [0, 1, 2, 3, 4, 5, 6, 7].map(i =>
@@ -24,7 +26,8 @@ export class World {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener('change', () => this.ask());
-    this.controls.addEventListener('start', () => { this.touched = true; });
+    this.controls.addEventListener('start', () => { this.touched = this.moving = true; this.frame = 0; });
+    this.controls.addEventListener('end', () => { this.moving = false; this.ask(); });
     const sun = new DirectionalLight(0xffffff, 2.2);
     this.camera.add(sun);
     sun.position.set(-0.4, 0.8, 1);
@@ -33,6 +36,8 @@ export class World {
     this.box = new Box3(new Vector3(...scene.box[0]), new Vector3(...scene.box[1]));
     this.start = new Vector3(...scene.from);
     this.lineMaterials = [];
+    this.clouds = []; // geometries of points, of which a part is drawn while the view moves, where that takes long
+    this.share = 1;
     this.covered = { left: 0, below: 0 }; // pixels that controls cover: the model is shown beside them
     this.after = [];
     this.before = [];
@@ -48,6 +53,7 @@ export class World {
 
   draw(time) {
     if (this.flight) this.fly(time);
+    this.spare(time);
     for (const task of this.before) task(time);
     const size = this.box.min.distanceTo(this.box.max);
     const depths = corners(this.box).map(corner => -corner.applyMatrix4(this.camera.matrixWorldInverse).z);
@@ -62,6 +68,19 @@ export class World {
     this.renderer.clearDepth();
     this.renderer.render(this.front, this.camera);
     for (const task of this.after) task();
+  }
+
+  // Draw fewer points while the view moves, as few as keep it fluent; all of them as soon as it rests.
+  spare(time) {
+    const moving = this.moving || Boolean(this.flight), took = time - this.frame;
+    if (moving && this.frame && took < PAUSE) {
+      if (took > SLOW) this.share = Math.max(this.share * 0.6, LEAST_SHARE);
+      else if (took < QUICK) this.share = Math.min(this.share * 1.2, 1);
+    }
+    this.frame = moving ? time : 0;
+    for (const points of this.clouds) {
+      points.setDrawRange(0, moving ? Math.ceil(this.share * points.index.count) : Infinity);
+    }
   }
 
   resize() {
@@ -125,7 +144,7 @@ export class World {
       target: flight.target.clone().lerp(flight.to.target, eased),
     });
     if (share === 1) this.flight = null;
-    else this.ask();
+    this.ask();
   }
 
   home(flying = true) { this.show(this.box, this.start, flying, this.sample); }
