@@ -21,7 +21,7 @@ ROUNDS = 3
 STATE = "document.querySelector('.tiskel-viewer').dataset.milliseconds"
 TURN = """(async () => { const w = document.querySelector('.tiskel-viewer').viewer.world;
 const g = w.renderer.getContext(), start = performance.now();
-for (let i = 0; i < 10; i++) { w.turn(0.05, 0); w.draw(performance.now()); 
+for (let i = 0; i < 10; i++) { w.turn(0.05, 0); w.draw(performance.now());
 g.readPixels(0, 0, 1, 1, g.RGBA, g.UNSIGNED_BYTE, new Uint8Array(4)); }
 return (performance.now() - start) / 10; })()"""
 
