@@ -1,6 +1,7 @@
 """The rules of the house: imports go one way, kernels follow Taichi's, the public surface is complete and cheap."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -114,3 +115,15 @@ def loaded_by(code: str, modules: str) -> str:
     check = f"import sys; before = set(sys.modules)\n{code}\nprint(sorted({modules} & set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True, cwd=ROOT / "tests")
     return done.stdout.strip()
+
+
+def test_every_other_file_goes_into_the_wheel() -> None:
+    """Scripts, styles and licences of a package are in package-data; the recipe of the viewer's script is not."""
+    listed = (ROOT / "pyproject.toml").read_text().split("[tool.setuptools.package-data]")[1].split("\n\n")[0]
+    patterns = dict(re.findall(r'^"?([\w.]+)"? = \["([^"]+)"\]', listed, re.MULTILINE))
+    kept = {ROOT.joinpath(*package.split("."), *pattern.split("/")) for package, pattern in patterns.items()}
+    recipe = ROOT / "tiskel" / "viewer" / "build"
+    for path in (ROOT / "tiskel").rglob("*"):
+        ours = not any(path.is_relative_to(folder) for folder in (*LINKS, recipe))
+        if ours and path.is_file() and path.suffix not in {".py", ".pyc"}:
+            assert any(path.match(str(pattern)) for pattern in kept), path

@@ -1,7 +1,9 @@
 """Scenes: what layers they have, that packing loses nothing that can be seen, and what is left out is said."""
 
+import hashlib
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from tiskel.params import LookParams, RollParams
 from tiskel.skeleton import Skeleton
 from tiskel.viewer.curves import MOST_POINTS
 from tiskel.viewer.packed import STEPS, pack
+from tiskel.viewer.page import asset
 from tiskel.viewer.scene import Field, Layer, Remark, scene_of
 
 NUMBERS = {"u8": np.uint8, "u16": "<u2", "u32": "<u4", "f32": "<f4"}
@@ -136,3 +139,13 @@ def test_what_cannot_be_shown_is_refused() -> None:
         view(np.eye(3)).dump(".gif")
     with pytest.raises(TiskelError, match="up must be one of"):
         view(np.eye(3), up="w")
+
+
+def test_the_script_is_made_of_its_sources() -> None:
+    """Where this fails, run the recipe in tiskel/viewer/build."""
+    sources = sorted((Path(__file__).parents[2] / "tiskel" / "viewer" / "build" / "src").iterdir())
+    digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
+    made = asset("viewer.js")
+    assert f"sources {digest[:16]}" in made[:300]
+    assert "http" not in made.replace("http://www.w3.org/", "")
+    assert len(made) < 700_000
