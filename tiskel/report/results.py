@@ -1,5 +1,6 @@
 """Measures, branches, surfaces, runs and steps as tables with words."""
 
+from tiskel import messages
 from tiskel.metrics.result import Quality
 from tiskel.metrics.tables import COLUMNS, row_of
 from tiskel.pictures.canvas import with_unit
@@ -44,19 +45,21 @@ def surfaces(result: PipelineResult, unit: str) -> list[str]:
         with_unit("radius", unit),
         "order",
         "misfit",
+        "unseen",
         "frame",
         "slices",
         "warnings",
     )
     rows: list[tuple[object, ...]] = [
         (
-            s.name, s.length, s.radius, s.order, f"{s.error:.2%}", s.frame,
+            s.name, s.length, s.radius, s.order, f"{s.error:.2%}", f"{s.unseen:.0%}", s.frame,
             ", ".join(f"{count} {case}" for case, count in s.cases().items()), "; ".join(s.warnings),
         )
         for s in result.surfaces
     ]  # fmt: skip
-    rows += [(branch, "", "", "", "", "", "no surface", why) for branch, why in result.surfaces.rejected.items()]
-    return [m.table(head, rows, "numbers")]
+    rows += [(branch, "", "", "", "", "", "", "no surface", why) for branch, why in result.surfaces.rejected.items()]
+    covered = [("plain", one.text) for one in messages.of_coverage(result.surfaces)]
+    return [m.messages(covered), m.table(head, rows, "numbers")]
 
 
 def runs(result: PipelineResult, unit: str) -> list[str]:
