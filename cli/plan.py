@@ -12,7 +12,7 @@ from tiskel.cli import surface_options as so
 from tiskel.cli.common import common
 from tiskel.cli.progress import reading, shown
 from tiskel.errors import TiskelError
-from tiskel.params import PlanParams
+from tiskel.params import LookParams, PlanParams
 
 if TYPE_CHECKING:
     from tiskel.rolling.plan import Plan
@@ -104,10 +104,9 @@ def plan(
     if path is not None:
         stages.write(path, lambda: as_suffixed(str(path), [found.run]))
     if animate is not None:
-        from tiskel.pictures.animation import animation
-        from tiskel.pictures.canvas import picture_kind
+        from tiskel.cli.films import film
 
-        stages.write(animate, lambda: animation(body, found.run, picture_kind(str(animate))))
+        stages.write(animate, lambda: film(body, [found.run], str(animate), LookParams()))
     if as_json:
         typer.echo(json.dumps(found.as_dict(), allow_nan=False))
     if output is not None or not as_json:

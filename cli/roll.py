@@ -14,12 +14,10 @@ from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
 from tiskel.cli.common import common, looks
 from tiskel.cli.progress import reading, shown
-from tiskel.errors import TiskelError
 from tiskel.params import LookParams
 
 if TYPE_CHECKING:
     from tiskel.rolling.trajectory import Trajectory
-    from tiskel.slicing.fitted import FittedSurface
 
 POSES = (".tum", ".yaml", ".yml")  # what a trajectory can be written as, besides CSV
 BranchName = Annotated[
@@ -114,27 +112,14 @@ def roll(
 
         stages.write(plot, lambda: rolling_picture(surface, runs, source.name, picture_kind(str(plot)), look))
     if animate is not None:
-        stages.write(animate, lambda: _film(surface, runs, str(animate), look))
+        from tiskel.cli.films import film
+
+        stages.write(animate, lambda: film(surface, runs, str(animate), look))
     if as_json:
         typer.echo(json.dumps(summary(getattr(surface, "name", "body"), runs), allow_nan=False))
     if output is not None or not as_json:
         stages.write(target, lambda: as_suffixed(str(target), runs))
     return None
-
-
-def _film(surface: "FittedSurface", runs: "Sequence[Trajectory]", target: str, look: LookParams) -> bytes:
-    """Return a film of the first run, or a page with all of them, by the suffix."""
-    kind = target.rpartition(".")[2].lower()
-    if kind == "gif":
-        from tiskel.pictures.animation import animation
-
-        return animation(surface, runs[0], look)
-    if kind != "html":
-        raise TiskelError(f"an animation cannot be written as {kind!r}; choose one of gif, html")
-    from tiskel import view
-
-    shown = view(surface.cloud, surface, *runs, up=look.up, unit=look.unit, title=f"branch {surface.name}, rolling")
-    return shown.html().encode()
 
 
 def summary(branch: str, runs: "Sequence[Trajectory]") -> dict[str, Any]:

@@ -12,9 +12,9 @@ from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.clouds import Cloud, parse_cloud
-from tiskel.io.limits import unpacked
 from tiskel.io.curves import Curve, parse_curve
 from tiskel.io.formats import format_of
+from tiskel.io.limits import unpacked
 from tiskel.io.stages.contraction import parse_contraction
 from tiskel.io.stages.path import RolledPath, is_path, parse_paths
 from tiskel.io.stages.skeleton import parse_skeleton

@@ -12,10 +12,10 @@ import numpy as np
 
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
-from tiskel.wording import printable
 from tiskel.geometry.views import View, broad_view
 from tiskel.params import LookParams
 from tiskel.pictures.style import CLOUD, INK, SCALE, SIZES, faded
+from tiskel.wording import printable
 
 SHOWN_POINTS = 20_000  # more only blacken the picture
 FORMATS = ("png", "svg", "pdf")

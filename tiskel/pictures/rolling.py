@@ -114,12 +114,15 @@ def faces(view: View, run: Trajectory) -> Mask:
     return np.asarray(view.depth(run.centre - run.contact) >= 0)
 
 
-def _overview(panel: Any, surface: FittedSurface | BodySurface, runs: Sequence[Trajectory], sight: Sight, frame: Points) -> None:
+def _overview(
+    panel: Any, surface: FittedSurface | BodySurface, runs: Sequence[Trajectory], sight: Sight, frame: Points
+) -> None:
     """Draw the cloud, a net of the surface, the ways, and the frame of the close-up."""
     cloud_panel(panel, sight)
-    for place in np.linspace(0, V_STOP, 24) if isinstance(surface, FittedSurface) else ():
-        ring = np.stack(surface.jet(TURN, np.full(len(TURN), place)).f, axis=1)
-        panel.plot(*sight.flat(ring).T, color=INK, linewidth=0.25)
+    if isinstance(surface, FittedSurface):
+        for place in np.linspace(0, V_STOP, 24):
+            ring = np.stack(surface.jet(TURN, np.full(len(TURN), place)).f, axis=1)
+            panel.plot(*sight.flat(ring).T, color=INK, linewidth=0.25)
     for r, colour in zip(runs, COLOURS, strict=False):
         way(panel, r, sight, colour)
     low, high = sight.flat(frame).min(axis=0), sight.flat(frame).max(axis=0)
@@ -128,7 +131,9 @@ def _overview(panel: Any, surface: FittedSurface | BodySurface, runs: Sequence[T
     panel.set_title("the surface, and what the close-up shows", fontsize=SIZES["head"])
 
 
-def _close_up(panel: Any, surface: FittedSurface | BodySurface, runs: Sequence[Trajectory], sight: Sight, frame: Points) -> None:
+def _close_up(
+    panel: Any, surface: FittedSurface | BodySurface, runs: Sequence[Trajectory], sight: Sight, frame: Points
+) -> None:
     """Draw the ways of the contact, turned away from the eye dotted, and the spheres at the start and at the end."""
     cloud_panel(panel, sight, frame)
     if isinstance(surface, FittedSurface):
