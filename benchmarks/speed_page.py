@@ -6,7 +6,7 @@ from itertools import groupby
 import numpy as np
 from tables import FOLDER, Row, written
 
-from tiskel.kernels.runtime import requested_threads
+from tiskel.kernels.threads import requested_threads
 from tiskel.pictures.canvas import new_figure, rendered
 
 FITTED = 16_384  # points from which on growth is fitted; below, what every call costs is a part of it

@@ -49,6 +49,10 @@ COMMANDS = {
         "view", "view",
         "Show clouds, curves, surfaces and runs together: a page that turns under the mouse, or a picture.",
     ),
+    "batch": Entry(
+        "batch", "batch",
+        "Do many clouds: what `tiskel run` does, a sub-folder each; resumable, on one machine or many.",
+    ),
     "shape": Entry(
         "shape", "shape", "Make a cloud whose curve skeleton is known: tubes, plants, blocks, torsos, wires.",
         bare=True,

@@ -56,11 +56,11 @@ def _state(module: str) -> tuple[str, bool]:
 def _kernels() -> list[tuple[str, str, bool]]:
     """Run a small contraction and say with how many threads, and where compiled kernels are kept."""
     from tiskel import ShapeParams, contract, make_shape, shape_graph
-    from tiskel.kernels import folders, runtime
+    from tiskel.kernels import folders, threads
 
     try:
         left = len(contract(make_shape(shape_graph("capsule"), ShapeParams(count=200))[0]).points)
-        state = (f"run on {runtime.requested_threads()} threads; 200 points contracted to {left}", True)
+        state = (f"run on {threads.requested_threads()} threads; 200 points contracted to {left}", True)
     except Exception as error:
         state = (f"{type(error).__name__}: {error}", False)
     cache = folders.cache_folder() or "off: its folder cannot be made, or TI_OFFLINE_CACHE is 0"

@@ -38,12 +38,21 @@ def files_of(result: PipelineResult, cloud: Cloud, *, history: bool) -> Files:
         "skeleton.obj": lambda: EXPORTS["obj"](s),
         "skeleton.swc": lambda: EXPORTS["swc"](s),
         "skeleton.json": lambda: EXPORTS["json"](s),
-        "metrics.ply": lambda: dump_heat(result.quality),
         **_surface_files(result, source),
-        "metrics.json": lambda: _document(result.quality.as_dict()),
-        "stability.json": lambda: _document(result.stability.as_dict()),
+        **_measures(result),
         **_roll_documents(result),
     }
+
+
+def _measures(result: PipelineResult) -> Files:
+    quality, stability = result.quality, result.stability
+    files: Files = {}
+    if quality is not None:
+        files["metrics.ply"] = lambda: dump_heat(quality)
+        files["metrics.json"] = lambda: _document(quality.as_dict())
+    if stability is not None:
+        files["stability.json"] = lambda: _document(stability.as_dict())
+    return files
 
 
 def _surface_files(result: PipelineResult, source: dict[str, str]) -> Files:
@@ -75,11 +84,11 @@ def report_of(result: PipelineResult, facts: RunFacts, pictures: Files) -> Files
 def pictures_of(result: PipelineResult, cloud: Cloud, look: LookParams | None = None) -> Files:
     """Draw all pictures and return them by name."""
     c, s, title = result.contraction, result.skeleton, f"{cloud.name}, {result.contraction.params.method}"
-    drawn = {
-        "skeleton.png": skeleton_picture(s, title, look=look),
-        "metrics.png": quality_picture([(title, s.cloud, result.quality)], look=look),
-        "stability.png": stability_picture(c, result.stability, title, look=look),
-    }
+    drawn = {"skeleton.png": skeleton_picture(s, title, look=look)}
+    if result.quality is not None:
+        drawn["metrics.png"] = quality_picture([(title, s.cloud, result.quality)], look=look)
+    if result.stability is not None:
+        drawn["stability.png"] = stability_picture(c, result.stability, title, look=look)
     if result.surfaces is not None and len(result.surfaces):
         drawn["slices.png"] = slices_picture(result.surfaces, title, look=look)
     if result.surfaces is not None and result.trajectories:

@@ -16,7 +16,6 @@ import functools
 import os
 import threading
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any, TypeVar
 
 import taichi as ti
@@ -26,9 +25,7 @@ from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
 from .errors import TiskelError
 from .folders import make_cache_folder, somewhere
-
-THREADS_VARIABLE = "TISKEL_NUM_THREADS"
-MOST_THREADS = 1024  # Taichi starts as many as it is told, until the system refuses and it aborts
+from .threads import requested_threads
 
 _lock = threading.RLock()
 _started_in: list[int] = []
@@ -36,31 +33,6 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 if hasattr(os, "register_at_fork"):  # a child must not inherit the lock of a thread that it does not inherit
     os.register_at_fork(before=_lock.acquire, after_in_parent=_lock.release, after_in_child=_lock.release)
-
-
-def available_threads() -> int:
-    """Return the threads that the affinity mask and the cgroup quota allow, at least one."""
-    affinity = getattr(os, "sched_getaffinity", None)
-    count = len(affinity(0)) if affinity else os.cpu_count() or 1
-    return max(1, min(count, _cgroup_quota() or count, MOST_THREADS))
-
-
-def requested_threads() -> int:
-    """Return TISKEL_NUM_THREADS, or what the machine allows where it is unset.
-
-    Raises
-    ------
-    TiskelError
-        Where the variable is no whole number from 1 to 1024.
-    """
-    value = os.environ.get(THREADS_VARIABLE)
-    if value is None:
-        return available_threads()
-    if not (value.isascii() and value.isdigit() and 1 <= int(value) <= MOST_THREADS):
-        raise TiskelError(
-            f"{THREADS_VARIABLE} must be a whole number from 1 to {MOST_THREADS}, got {value!r}; correct or unset it"
-        )
-    return int(value)
 
 
 def ensure() -> None:
@@ -140,12 +112,3 @@ def _without_print() -> Iterator[None]:
         yield
     finally:
         del misc.print
-
-
-def _cgroup_quota() -> int | None:
-    """Return the CPU quota of this cgroup (version 2) in whole cores, None where there is none."""
-    try:
-        quota, period = Path("/sys/fs/cgroup/cpu.max").read_text().split()
-        return None if quota == "max" else max(1, int(quota) // int(period))
-    except (OSError, ValueError):
-        return None

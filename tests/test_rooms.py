@@ -40,9 +40,10 @@ ALLOWED = {
     "pipeline": f"{STAGES} preprocess metrics surfaces slicing rolling io messages",
     "viewer": f"{STAGES} metrics surfaces slicing rolling io pictures pipeline",
     "report": f"{STAGES} version metrics surfaces slicing rolling pictures messages pipeline viewer",
+    "batch": f"{BASE} kernels version io metrics",  # many clouds; what is done with each, it is told
     "tiskel": "",  # the face of the package hands names on when they are asked for
     "cli": f"{STAGES} tiskel version preprocess metrics gallery surfaces slicing rolling io pictures pipeline messages "
-    "viewer report",
+    "batch viewer report",
 }
 WITHIN = {  # the same inside rooms that have rooms of their own
     "methods.trace": "",

@@ -62,14 +62,15 @@ class PipelineResult:
         The cloud as it was contracted: what conditioning left of the input.
     contraction : Contraction
     skeleton : Skeleton
-    quality : Quality
-    stability : Stability
+    quality : Quality or None
+    stability : Stability or None
+        None where the settings leave the stage out; surfaces and trajectories likewise.
     surfaces : Surfaces or None
         With that of the whole body; None where it could not be fitted, and then there are no trajectories.
     trajectories : tuple of Trajectory
         The runs over the body, or the longest surface of a branch; empty where the sphere cannot roll there.
     reason : str
-        Why there are no surfaces or no trajectories; empty where there are both.
+        Why there are no surfaces or no trajectories, though asked for; else empty.
     seconds : dict
         Wall time by part, and of the inner parts of contraction and measures as "contract.X" and "metrics.X".
     messages : tuple of Message
@@ -88,8 +89,8 @@ class PipelineResult:
     points: Points
     contraction: Contraction
     skeleton: Skeleton
-    quality: Quality
-    stability: Stability
+    quality: Quality | None
+    stability: Stability | None
     surfaces: Surfaces | None
     trajectories: tuple[Trajectory, ...]
     reason: str
@@ -193,10 +194,13 @@ def run_pipeline(
         messages.of_contraction,
     )
     s = record.do("skeleton", lambda: extract_skeleton(c, chosen.skeleton, progress=progress), messages.of_skeleton)
-    quality = record.do("metrics", lambda: evaluate(s, params=chosen.metrics, progress=progress), lambda _: ())
-    stability = record.do(
-        "stability", lambda: assess_stability(c, chosen.stability, progress=progress), messages.of_stability
-    )
+    quality = stability = None
+    if "metrics" in chosen.stages:
+        quality = record.do("metrics", lambda: evaluate(s, params=chosen.metrics, progress=progress), lambda _: ())
+    if "stability" in chosen.stages:
+        stability = record.do(
+            "stability", lambda: assess_stability(c, chosen.stability, progress=progress), messages.of_stability
+        )
     surfaces, trajectories, reason = _surfaces_and_runs(s, chosen, record, progress)
     return PipelineResult(
         points=ready,
@@ -217,6 +221,8 @@ def _surfaces_and_runs(
     skeleton: Skeleton, params: PipelineParams, record: _Record, progress: Report | None
 ) -> tuple[Surfaces | None, tuple[Trajectory, ...], str]:
     """Fit surfaces and roll over the longest; where that is impossible, return the reason and what there is."""
+    if not {"surface", "roll"} & set(params.stages):
+        return None, (), ""
     surfaces, reason = record.attempt(
         "surface",
         lambda: fit_whole(skeleton, params.surface, body=params.body, progress=progress),
@@ -224,6 +230,8 @@ def _surfaces_and_runs(
     )
     if surfaces is None:
         return None, (), reason
+    if "roll" not in params.stages:
+        return surfaces, (), ""
     runs, reason = record.attempt(
         "roll",
         lambda: tuple(roll_over(surfaces, r, progress=progress) for r in params.roll),
@@ -232,7 +240,7 @@ def _surfaces_and_runs(
     return surfaces, runs or (), reason
 
 
-def _inner_seconds(c: Contraction, quality: Quality) -> dict[str, float]:
+def _inner_seconds(c: Contraction, quality: Quality | None) -> dict[str, float]:
     steps = {f"contract.{part}": sum(t.seconds.get(part, 0) for t in c.steps) for part in c.steps[0].seconds}
-    measures = {f"metrics.{part}": seconds for part, seconds in quality.seconds.items()}
+    measures = {f"metrics.{part}": seconds for part, seconds in (quality.seconds if quality else {}).items()}
     return steps | {"contract.rings": c.ring_seconds} | measures

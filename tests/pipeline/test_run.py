@@ -57,6 +57,8 @@ def test_results_are_those_of_the_stages_one_by_one(cloud: np.ndarray, result: P
     np.testing.assert_array_equal(result.points, points)
     np.testing.assert_array_equal(result.contraction.points, c.points)
     np.testing.assert_array_equal(result.skeleton.nodes, s.nodes)
+    assert result.quality is not None
+    assert result.stability is not None
     assert result.quality.as_dict() == evaluate(s).as_dict()
     assert result.stability.as_dict() == assess_stability(c).as_dict()
     np.testing.assert_array_equal(result.trajectories[0].contact, trajectory.contact)

@@ -149,7 +149,7 @@ def body_of(winding: Stack, origin: Numbers, step: float, points: Points, level:
     -------
     Body or None
     """
-    from tiskel.kernels.runtime import requested_threads
+    from tiskel.kernels.threads import requested_threads
 
     if int((winding > level).sum()) > MOST_CELLS:
         winding, step = winding[::2, ::2, ::2], 2 * step

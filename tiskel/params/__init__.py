@@ -6,6 +6,7 @@ marked [T] are those of the published MATLAB toolboxes, which produced the
 published tables.
 """
 
+from tiskel.params.batch import BatchParams
 from tiskel.params.body import BodyParams
 from tiskel.params.conditioning import ConditioningParams, NoiseKind
 from tiskel.params.look import UPS, LookParams, Up
@@ -31,7 +32,7 @@ from tiskel.params.methods import (
     settings_of,
 )
 from tiskel.params.metrics import Bars, BetaRule, MetricParams
-from tiskel.params.pipeline import PipelineParams
+from tiskel.params.pipeline import STAGES, PipelineParams, Stage
 from tiskel.params.plan import PlanParams as PlanParams
 from tiskel.params.roll import Model, Normals, RollParams, Side, Twist
 from tiskel.params.shape import ShapeParams
@@ -43,8 +44,10 @@ from tiskel.params.tiles import JoinParams, Parts, SplitParams
 __all__ = [
     "MIN_POINTS",
     "SIDE",
+    "STAGES",
     "UPS",
     "Bars",
+    "BatchParams",
     "BetaRule",
     "BodyParams",
     "ConditioningParams",
@@ -76,6 +79,7 @@ __all__ = [
     "Solver",
     "SplitParams",
     "StabilityParams",
+    "Stage",
     "SurfaceParams",
     "Topology",
     "Twist",

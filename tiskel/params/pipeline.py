@@ -1,8 +1,10 @@
 """Settings of all stages of one cloud."""
 
 from dataclasses import dataclass, field
+from typing import Literal, get_args
 
 from tiskel.params.body import BodyParams
+from tiskel.params.checks import among
 from tiskel.params.conditioning import ConditioningParams
 from tiskel.params.methods import ContractionParams, RobustParams
 from tiskel.params.metrics import MetricParams
@@ -10,6 +12,9 @@ from tiskel.params.roll import RollParams
 from tiskel.params.skeleton import SkeletonParams
 from tiskel.params.stability import StabilityParams
 from tiskel.params.surface import SurfaceParams
+
+Stage = Literal["contract", "skeleton", "metrics", "stability", "surface", "roll"]
+STAGES: tuple[Stage, ...] = get_args(Stage)
 
 
 def over_the_body() -> tuple[RollParams, ...]:
@@ -41,6 +46,9 @@ class PipelineParams:
     roll: tuple[RollParams, ...] = field(
         default_factory=over_the_body
     )  #: one run each; on a branch, over the longest surface
+    stages: tuple[Stage, ...] = STAGES  #: which are done; the first two always, the surface where a sphere is to roll
 
     def __post_init__(self) -> None:
+        for stage in self.stages:
+            among("stages", stage, STAGES)
         self.skeleton.over(self.contraction)

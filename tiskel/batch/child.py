@@ -1,0 +1,126 @@
+"""What runs in a child process: one cloud after the other, as its parent says, and never without a parent.
+
+Started as a program of its own, not forked: kernels do not survive a fork, and
+their first call needs the main thread. An answer is a mapping of JSON values.
+"""
+
+import contextlib
+import ctypes
+import importlib
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from tiskel.errors import TiskelError
+
+Answer = dict[str, Any]
+READY: Answer = {"status": "ready"}
+KILLED_FIRST = 700  # out of 1000: the kernel, out of memory, takes the child and not its parent
+SLACK = 2 << 30  # bytes above the limit that the system lets a child reserve, before its parent has noticed
+PR_SET_PDEATHSIG = 1  # of prctl(2)
+IDLE = 600.0  # seconds without a word from the parent after which the child ends; it is started again when needed
+
+
+class CloudError(TiskelError):
+    """Why a cloud failed, and of which kind the failure is."""
+
+    def __init__(self, kind: str, message: str) -> None:
+        super().__init__(message)
+        self.kind = kind
+
+
+def main(handle: int, parent: int) -> None:
+    """Do what comes down the pipe until it ends."""
+    for ignored in (signal.SIGINT, signal.SIGTERM):  # sent to the whole group; the parent decides
+        signal.signal(ignored, signal.SIG_IGN)
+    _end_with(parent)
+    with contextlib.suppress(OSError):
+        Path("/proc/self/oom_score_adj").write_text(str(KILLED_FIRST))
+    pipe = Connection(handle)
+    with contextlib.suppress(EOFError, OSError):
+        name, settings, memory = pipe.recv()
+        work = _function(name)
+        _limit(memory)
+        pipe.send(READY)
+        while pipe.poll(IDLE):
+            path, folder = pipe.recv()
+            pipe.send(_answer(lambda: work(Path(path), Path(folder), settings)))  # noqa: B023
+
+
+def _function(name: str) -> Callable[..., dict[str, Any]]:
+    module, _, function = name.partition(":")
+    found: Callable[..., dict[str, Any]] = getattr(importlib.import_module(module), function)
+    return found
+
+
+def _answer(work: Callable[[], dict[str, Any]]) -> Answer:
+    """Do a cloud, and say how it went."""
+    _forget_peak()
+    start = time.perf_counter()
+    try:
+        answer: Answer = {"status": "done", "kind": "", "message": "", "facts": work()}
+    except CloudError as error:
+        answer = _failed(error.kind, str(error))
+    except TiskelError as error:
+        answer = _failed("refused", str(error))
+    except MemoryError:
+        answer = _failed("memory", "out of memory; thin the cloud, or allow more")
+    except Exception as error:
+        answer = _failed("error", f"unexpected {type(error).__name__}: {error}")
+    return answer | {"seconds": time.perf_counter() - start, "peak_mb": peak_mb()}
+
+
+def _failed(kind: str, message: str) -> Answer:
+    return {"status": "failed", "kind": kind, "message": " ".join(message.split())}
+
+
+def _forget_peak() -> None:
+    """Begin to count the peak of memory anew."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5")
+
+
+def peak_mb() -> float | None:
+    """Return the most memory that the process held, in 10^6 bytes, None where the system does not say."""
+    try:
+        words = Path("/proc/self/status").read_text().partition("VmHWM:")[2].split()
+        return round(int(words[0]) * 1024 / 1e6, 1)
+    except (OSError, ValueError, IndexError):
+        return None
+
+
+def _limit(memory: float | None) -> None:
+    """Let the system refuse what is far beyond a limit in GB; what is just beyond, the parent sees."""
+    if memory is not None:
+        import resource
+
+        most = int(memory * 1e9) + SLACK
+        resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+
+
+def _end_with(parent: int) -> None:
+    """See to it that the process dies with its parent, whatever kills that one."""
+    try:
+        asked = ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL) == 0
+    except (OSError, AttributeError):
+        asked = False
+    if os.getppid() != parent:
+        os._exit(1)
+    if not asked:
+        threading.Thread(target=_watch, args=(parent,), daemon=True).start()
+
+
+def _watch(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]))
