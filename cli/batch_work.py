@@ -2,6 +2,8 @@
 
 import time
 from collections import Counter
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +11,22 @@ from tiskel import messages
 from tiskel.batch.child import CloudError
 from tiskel.cli import run_files, stages
 from tiskel.errors import TiskelError
+from tiskel.gallery.make import make_shape, shape_graph
 from tiskel.io.clouds import Cloud, load_cloud
 from tiskel.io.streams import write_bytes
 from tiskel.metrics.tables import row_of
-from tiskel.params import PipelineParams
+from tiskel.params import ConditioningParams, PipelineParams, ShapeParams
 from tiskel.pipeline import Finished, PipelineResult, run_pipeline
+
+LONGEST = 300  # characters of a reason in the summary
+
+
+def prepare(settings: Any) -> None:
+    """Do a small cloud with the same settings, so that kernels are compiled before the first."""
+    params: PipelineParams = settings["params"]
+    points = make_shape(shape_graph("capsule"), ShapeParams(count=400))[0]
+    with suppress(TiskelError):  # settings made for others need not fit it
+        run_pipeline(points, replace(params, conditioning=ConditioningParams(), roll=()))
 
 
 def work(path: Path, folder: Path, settings: Any) -> dict[str, Any]:
@@ -71,6 +84,6 @@ def _row(cloud: Cloud, result: PipelineResult) -> dict[str, Any]:
         **s.counts(),
         "surfaces": None if surfaces is None else len(list(surfaces)),
         "runs": " ".join(f"{run.params.model}:{run.status.value}" for run in result.trajectories),
-        "reason": result.reason,
+        "reason": result.reason[:LONGEST],
     }
     return row | (row_of(result.quality.as_dict()) if result.quality is not None else {})

@@ -21,6 +21,8 @@ from tiskel.errors import TiskelError
 
 Answer = dict[str, Any]
 READY: Answer = {"status": "ready"}
+COMPILED: Answer = {"status": "compiled"}  #: it ends, to keep the kernels that it compiled: Taichi does so at the end
+COLD = 20.0  # seconds of preparation above which kernels were compiled
 KILLED_FIRST = 700  # out of 1000: the kernel, out of memory, takes the child and not its parent
 SLACK = 2 << 30  # bytes above the limit that the system lets a child reserve, before its parent has noticed
 PR_SET_PDEATHSIG = 1  # of prctl(2)
@@ -44,8 +46,11 @@ def main(handle: int, parent: int) -> None:
         Path("/proc/self/oom_score_adj").write_text(str(KILLED_FIRST))
     pipe = Connection(handle)
     with contextlib.suppress(EOFError, OSError):
-        name, settings, memory = pipe.recv()
+        name, settings, memory, again = pipe.recv()
         work = _function(name)
+        if _prepare(name, settings) > COLD and again:
+            pipe.send(COMPILED)
+            return
         _limit(memory)
         pipe.send(READY)
         while pipe.poll(IDLE):
@@ -57,6 +62,15 @@ def _function(name: str) -> Callable[..., dict[str, Any]]:
     module, _, function = name.partition(":")
     found: Callable[..., dict[str, Any]] = getattr(importlib.import_module(module), function)
     return found
+
+
+def _prepare(name: str, settings: Any) -> float:
+    """Call the function prepare of the same module, where there is one; return the seconds that it took."""
+    start = time.perf_counter()
+    prepare = getattr(importlib.import_module(name.partition(":")[0]), "prepare", None)
+    if prepare is not None:
+        prepare(settings)
+    return time.perf_counter() - start
 
 
 def _answer(work: Callable[[], dict[str, Any]]) -> Answer:

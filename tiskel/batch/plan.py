@@ -10,7 +10,9 @@ from typing import Any
 from tiskel.params.batch import BatchParams
 from tiskel.version import version
 
-#: What is done with one cloud: (its path, an empty folder for files, settings) -> facts for the record, JSON values.
+#: What is done with one cloud: (its path, an empty folder for files, settings) -> facts for the record, JSON values:
+#: "warnings" by code, "parts" in seconds, and a "row" for the summary. Where its module has prepare(settings),
+#: a process calls it before its first cloud, and the limits do not count that.
 Work = Callable[[Path, Path, Any], dict[str, Any]]
 STATE = ".batch"  #: the folder, in that of the output, of leases and of results that are not complete
 

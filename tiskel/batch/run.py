@@ -7,14 +7,12 @@ from pathlib import Path
 
 from tiskel.batch.manifest import Manifest
 from tiskel.batch.plan import Plan
-from tiskel.batch.pool import Begun, News, Pool
+from tiskel.batch.pool import News, Pool
 from tiskel.batch.summary import write_summary
-from tiskel.batch.supervisor import Settled, Supervisor
+from tiskel.batch.supervisor import Supervisor
 from tiskel.batch.tasks import Task, absolute
 from tiskel.errors import TiskelError
 from tiskel.version import version
-
-__all__ = ["Begun", "News", "Settled", "run_batch"]
 
 
 def run_batch(tasks: Sequence[Task], plan: Plan, scheduler: str = "") -> Generator[News, None, None]:
@@ -73,6 +71,7 @@ def run_batch(tasks: Sequence[Task], plan: Plan, scheduler: str = "") -> Generat
         with closing(news):
             yield from news
     finally:
+        supervisor.sweep()  # after workers of a cluster that were lost
         supervisor.close()
         write_summary(plan)
 

@@ -13,7 +13,7 @@ from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
-from tiskel.batch.child import READY, Answer
+from tiskel.batch.child import COMPILED, READY, Answer
 from tiskel.errors import TiskelError
 
 LOOK = 0.05  # seconds between two looks at a child
@@ -102,14 +102,17 @@ class Worker:
         """Return the child, started and heard of."""
         if self._process is not None and (anew or self._process.poll() is not None):
             self.kill()
-        if self._process is None:
+        for again in (True, False):
+            if self._process is not None:
+                break
             self._process = self._start()
-            self._pipe.send((self.work, self.settings, self.memory))
+            self._pipe.send((self.work, self.settings, self.memory, again))
             answer = self._answer(self._process, time.monotonic() + STARTS, memory=None)
-            if answer != READY:
-                words = self._last_words()
-                self.kill()
-                raise TiskelError(f"a worker process does not start: {answer['message']}{words}")
+            if answer == COMPILED:
+                self.close()
+            elif answer != READY:
+                raise TiskelError(f"a worker process does not start: {answer['message']}")
+        assert self._process is not None
         return self._process
 
     def _start(self) -> "subprocess.Popen[bytes]":
