@@ -106,3 +106,11 @@ def test_a_cluster_without_workers_says_so(scheduler: str, tmp_path: Path) -> No
     plan = Plan(output=tmp_path / "out", work="reference.batch_works:obey")
     with pytest.raises(TiskelError, match="has no workers"):
         list(run_batch(find_tasks([str(tmp_path / "a.xyz")], plan.output), plan, scheduler))
+
+
+def test_a_cluster_that_is_not_there_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tiskel.batch.cluster.PATIENCE", 0.5)
+    (tmp_path / "a.xyz").write_text("good")
+    plan = Plan(output=tmp_path / "out", work="reference.batch_works:obey")
+    with pytest.raises(TiskelError, match=r"no scheduler at tcp://127.0.0.1:1: .*dask scheduler"):
+        list(run_batch(find_tasks([str(tmp_path / "a.xyz")], plan.output), plan, "tcp://127.0.0.1:1"))

@@ -28,12 +28,14 @@ BROKEN = {
     "mesh.stl": b"solid nothing\nfacet",
 }
 
+QUICK = ("--stages", "skeleton", "--method", "lbc", "--max-steps", "3")
+
 
 @pytest.fixture
 def scans(tmp_path: Path) -> Path:
     folder = tmp_path / "scans"
     folder.mkdir()
-    for i, name in enumerate(("y", "capsule", "ring")):
+    for i, name in enumerate(("y", "torus")):
         points = make_shape(named_shape(name), ShapeParams(count=400, seed=i))[0]
         (folder / f"{name}.ply").write_bytes(dump_cloud(points, "a.ply"))
     return folder
@@ -47,22 +49,21 @@ def test_good_clouds_are_as_from_run_and_broken_ones_have_their_reasons(
         (scans / name).write_bytes(data)
     done = tiskel("batch", "scans", "-o", "out", "--jobs", 2, "--json", "--timeout", 300)
     assert done.returncode == 1
-    assert json.loads(done.stdout) == {"done": 3, "failed": 10, "kept": 0}
+    assert json.loads(done.stdout) == {"done": 2, "failed": 10, "kept": 0}
     last = done.stderr.decode().splitlines()[-1]
-    assert last.startswith("error: 10 of 13 clouds failed: ")
+    assert last.startswith("error: 10 of 12 clouds failed: ")
     assert "out/failed.txt" in last
     rows = {row["name"]: row for row in csv.DictReader((tmp_path / "out" / "summary.csv").open())}
     assert {rows[name.partition(".")[0]]["status"] for name in BROKEN} == {"failed"}
     assert {rows[name.partition(".")[0]]["kind"] for name in BROKEN} == {"unreadable", "refused"}
     assert all(row["message"] for row in rows.values() if row["status"] == "failed")
-    assert rows["ring"]["loops"] == "1"
+    assert rows["torus"]["loops"] == "1"
     assert float(rows["y"]["topology_bottleneck"]) >= 0
     assert tiskel("run", "scans/y.ply", "-o", "alone").returncode == 0
     alone, among = tmp_path / "alone", tmp_path / "out" / "y"
     names = sorted(path.name for path in among.iterdir())
-    assert {path.name for path in alone.iterdir() if path.suffix != ".png"} - {"report.html", "timings.json"} == {
-        *names
-    }
+    pages = {"report.html", "timings.json"}
+    assert {path.name for path in alone.iterdir() if path.suffix != ".png"} - pages == set(names)
     assert [name for name in names if (among / name).read_bytes() != (alone / name).read_bytes()] == []
     again = tiskel("batch", "scans/y.ply", "-o", "out", "--json")
     assert (again.returncode, json.loads(again.stdout)["kept"]) == (0, 1)
@@ -84,7 +85,7 @@ def test_stages_choose_what_is_done(scans: Path, tiskel: Runner, tmp_path: Path)
 @pytest.mark.slow
 def test_ctrl_c_ends_everything_and_the_rest_can_be_done_later(scans: Path, tiskel: Runner, tmp_path: Path) -> None:
     process = subprocess.Popen(
-        [PROGRAM, "batch", scans, "-o", tmp_path / "out", "--jobs", "2"], stderr=subprocess.PIPE, text=True,
+        [PROGRAM, "batch", scans, "-o", tmp_path / "out", "--jobs", "1", *QUICK], stderr=subprocess.PIPE, text=True,
         start_new_session=True,
     )  # fmt: skip
     manifest = tmp_path / "out" / "manifest.jsonl"
@@ -99,7 +100,7 @@ def test_ctrl_c_ends_everything_and_the_rest_can_be_done_later(scans: Path, tisk
     assert not (tmp_path / "out" / ".batch").exists()
     with pytest.raises(ProcessLookupError):  # nobody of the group is left
         os.killpg(process.pid, 0)
-    assert json.loads(tiskel("batch", "scans", "-o", "out", "--json").stdout)["kept"] >= 1
+    assert json.loads(tiskel("batch", "scans", "-o", "out", "--json", *QUICK).stdout)["kept"] == 1
 
 
 @pytest.mark.parametrize(
@@ -117,9 +118,3 @@ def test_wrong_settings_are_refused_before_anything_is_made(
     (tmp_path / "a.xyz").write_text("0 0 0\n")
     assert complaint in one_error_line(tiskel("batch", "a.xyz", "-o", "out", *words))
     assert not (tmp_path / "out").exists()
-
-
-def test_a_cluster_that_is_not_there_is_an_error(tiskel: Runner, tmp_path: Path) -> None:
-    (tmp_path / "a.xyz").write_text("0 0 0\n")
-    done = tiskel("batch", "a.xyz", "-o", "out", "--scheduler", "tcp://127.0.0.1:1", "--quiet")
-    assert "127.0.0.1:1" in one_error_line(done)

@@ -22,7 +22,7 @@ from tiskel.version import version
 
 WINDOW = 1000  # clouds that the scheduler knows of at a time
 RETRIES = 3  # times that a cloud is tried again after an error on a worker that is no failure of the cloud
-PATIENCE = 30.0  # seconds to reach the scheduler
+PATIENCE = 10.0  # seconds to reach the scheduler
 
 _here: dict[str, Supervisor] = {}  # of a worker: what it is at, by output, settings and beginning
 _lock = threading.Lock()
