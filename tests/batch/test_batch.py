@@ -100,8 +100,11 @@ def test_what_is_done_is_kept_and_what_is_not_as_it_was_is_done_again(scans: Pat
 def test_bad_clouds_fail_each_with_its_reason_and_cost_no_other(scans: Path, plan: Plan) -> None:
     for word in FAILING:
         (scans / f"{word}.xyz").write_text(f"{word} it")
+    os.mkfifo(scans / "pipe.xyz")  # that nobody writes into
     plan = replace(plan, params=replace(PARAMS, timeout=4.0, memory=0.5))
     found = settled(scans, plan)
+    assert found.pop("pipe").record["kind"] == "timeout"
+    (scans / "pipe.xyz").unlink()
     assert {name: one.record["kind"] for name, one in found.items() if one.outcome == "failed"} == FAILING
     assert sum(one.outcome == "done" for one in found.values()) == 6
     message = {name: one.record["message"] for name, one in found.items()}
@@ -113,11 +116,12 @@ def test_bad_clouds_fail_each_with_its_reason_and_cost_no_other(scans: Path, pla
     assert "exit code 3" in message["leave"]
     assert not any((plan.output / word).exists() for word in FAILING)
     failed = plan.output / "failed.txt"
-    assert [task.name for task in find_tasks([f"@{failed}"], plan.output)] == sorted(FAILING)
+    (scans / "pipe.xyz").write_text("good at last")
+    assert [task.name for task in find_tasks([f"@{failed}"], plan.output)] == sorted([*FAILING, "pipe"])
     for word in FAILING:  # mended, and fed back in
         (scans / f"{word}.xyz").write_text("good again")
     again = [one for one in run_batch(find_tasks([f"@{failed}"], plan.output), plan) if isinstance(one, Settled)]
-    assert [one.outcome for one in again] == ["done"] * len(FAILING)
+    assert [one.outcome for one in again] == ["done"] * (len(FAILING) + 1)
     assert failed.read_text() == ""
 
 

@@ -6,6 +6,7 @@ their first call needs the main thread. An answer is a mapping of JSON values.
 
 import contextlib
 import ctypes
+import hashlib
 import importlib
 import os
 import signal
@@ -26,6 +27,8 @@ COLD = 20.0  # seconds of preparation above which kernels were compiled
 KILLED_FIRST = 700  # out of 1000: the kernel, out of memory, takes the child and not its parent
 SLACK = 2 << 30  # bytes above the limit that the system lets a child reserve, before its parent has noticed
 PR_SET_PDEATHSIG = 1  # of prctl(2)
+INPUT = ("size", "mtime_ns", "sha256")  #: what a record says of an input
+BLOCK = 1 << 20  # bytes read at a time
 IDLE = 600.0  # seconds without a word from the parent after which the child ends; it is started again when needed
 
 
@@ -55,7 +58,8 @@ def main(handle: int, parent: int) -> None:
         pipe.send(READY)
         while pipe.poll(IDLE):
             path, folder = pipe.recv()
-            pipe.send(_answer(lambda: work(Path(path), Path(folder), settings)))  # noqa: B023
+            known = _input(Path(path))  # here, where the limits hold: a file may be a pipe that nobody writes into
+            pipe.send({**_answer(lambda: work(Path(path), Path(folder), settings)), "input": known})  # noqa: B023
 
 
 def _function(name: str) -> Callable[..., dict[str, Any]]:
@@ -92,6 +96,24 @@ def _answer(work: Callable[[], dict[str, Any]]) -> Answer:
 
 def _failed(kind: str, message: str) -> Answer:
     return {"status": "failed", "kind": kind, "message": " ".join(message.split())}
+
+
+def _input(path: Path) -> Answer:
+    """Return size, time and hash of an input; nothing where it cannot be read, which its reader will say."""
+    try:
+        stat = path.stat()
+        return dict(zip(INPUT, (stat.st_size, stat.st_mtime_ns, sha256(path)), strict=True))
+    except OSError:
+        return dict.fromkeys(INPUT)
+
+
+def sha256(path: Path) -> str:
+    """Return the hash of a file."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(BLOCK):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def _forget_peak() -> None:

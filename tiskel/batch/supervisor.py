@@ -1,8 +1,6 @@
 """One cloud, from the question whether it is done to its record; on this machine or in a worker of a cluster."""
 
 import contextlib
-import hashlib
-import os
 import shutil
 import threading
 import time
@@ -11,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from tiskel.batch.child import Answer
+from tiskel.batch.child import INPUT, Answer, sha256
 from tiskel.batch.leases import Leases, key_of
 from tiskel.batch.manifest import Manifest, Record
 from tiskel.batch.plan import Plan
@@ -21,7 +19,6 @@ from tiskel.version import version
 
 #: done, failed: just now, here or elsewhere; kept: it was done; busy: somebody else is at it.
 Outcome = Literal["done", "failed", "kept", "busy"]
-BLOCK = 1 << 20  # bytes read at a time
 
 
 @dataclass(frozen=True)
@@ -136,12 +133,11 @@ class Supervisor:
 
     def _do(self, task: Task, key: str, folder: Path, begun: Callable[[str], None]) -> Settled:
         begun(task.name)
-        known = _input(Path(task.path))
         folder.mkdir(parents=True)
         answer = self._child().do(task.path, folder)
         if not self.leases.mine(key):  # we slept for too long, and somebody else has taken the cloud over
             return Settled(task, "busy", {})
-        record = self._record(task, answer, known, folder)
+        record = self._record(task, answer, folder)
         self._put(task.name, folder if record["status"] == "done" else None)
         self.manifest.append(record)
         return Settled(task, record["status"], record, here=True)
@@ -165,7 +161,7 @@ class Supervisor:
             folder.rename(place)
         shutil.rmtree(old, ignore_errors=True)
 
-    def _record(self, task: Task, answer: Answer, known: Record, folder: Path) -> Record:
+    def _record(self, task: Task, answer: Answer, folder: Path) -> Record:
         """Return the line of the manifest."""
         done = answer["status"] == "done"
         me, files = self.leases.me, sorted(path for path in folder.rglob("*") if path.is_file()) if done else []
@@ -177,7 +173,7 @@ class Supervisor:
             "message": answer["message"],
             "settings": self.plan.digest,
             "version": version(),
-            **known,
+            **(answer.get("input") or dict.fromkeys(INPUT)),
             "seconds": round(answer["seconds"], 3),
             "peak_mb": answer["peak_mb"],
             **answer["facts"],
@@ -188,33 +184,12 @@ class Supervisor:
         }
 
 
-def _input(path: Path) -> Record:
-    """Return size, time and hash of an input; nothing where it cannot be read, which its reader will say."""
-    try:
-        stat = path.stat()
-        return {"size": stat.st_size, "mtime_ns": stat.st_mtime_ns, "sha256": sha256(path)}
-    except OSError:
-        return {"size": None, "mtime_ns": None, "sha256": None}
-
-
 def _same_input(record: Record, path: Path) -> bool:
     """Tell whether an input is what it was: of the same size and time, or else of the same bytes."""
     try:
         stat = path.stat()
-        if stat.st_size != record["size"]:
+        if record["sha256"] is None or stat.st_size != record["size"]:
             return False
         return bool(stat.st_mtime_ns == record["mtime_ns"]) or sha256(path) == record["sha256"]
     except OSError:
         return False
-
-
-def sha256(path: Path) -> str:
-    """Return the hash of a file."""
-    digest = hashlib.sha256()
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        while block := os.read(handle, BLOCK):
-            digest.update(block)
-    finally:
-        os.close(handle)
-    return digest.hexdigest()
