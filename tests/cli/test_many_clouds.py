@@ -84,6 +84,8 @@ def test_stages_choose_what_is_done(scans: Path, tiskel: Runner, tmp_path: Path)
 
 @pytest.mark.slow
 def test_ctrl_c_ends_everything_and_the_rest_can_be_done_later(scans: Path, tiskel: Runner, tmp_path: Path) -> None:
+    for i in range(20):  # more than a fast machine does before the signal arrives
+        (scans / f"y{i}.ply").write_bytes((scans / "y.ply").read_bytes())
     process = subprocess.Popen(
         [PROGRAM, "batch", scans, "-o", tmp_path / "out", "--jobs", "1", *QUICK], stderr=subprocess.PIPE, text=True,
         start_new_session=True,
@@ -94,13 +96,15 @@ def test_ctrl_c_ends_everything_and_the_rest_can_be_done_later(scans: Path, tisk
         assert time.monotonic() < deadline
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the children as well
+    done = manifest.read_text().count("\n") - 1
     said = process.communicate(timeout=60)[1]
     assert process.returncode == 130, said
+    assert done < 22
     assert said.splitlines()[-1] == "interrupted"
     assert not (tmp_path / "out" / ".batch").exists()
     with pytest.raises(ProcessLookupError):  # nobody of the group is left
         os.killpg(process.pid, 0)
-    assert json.loads(tiskel("batch", "scans", "-o", "out", "--json", *QUICK).stdout)["kept"] == 1
+    assert json.loads(tiskel("batch", "scans", "-o", "out", "--json", *QUICK).stdout)["kept"] >= 1
 
 
 @pytest.mark.parametrize(
