@@ -17,6 +17,7 @@ from tiskel.io.streams import write_bytes
 from tiskel.metrics.tables import row_of
 from tiskel.params import ConditioningParams, PipelineParams, ShapeParams
 from tiskel.pipeline import Finished, PipelineResult, run_pipeline
+from tiskel.report.page import RunFacts
 
 LONGEST = 300  # characters of a reason in the summary
 
@@ -40,14 +41,14 @@ def work(path: Path, folder: Path, settings: Any) -> dict[str, Any]:
     result = run_pipeline(cloud.points, params, weights, parts.append, cloud.surface)
     start = time.perf_counter()
     files = run_files.files_of(result, cloud, history=settings["history"])
+    told = [("read", messages.warned(cloud.warnings)), *((part.part, part.messages) for part in parts)]
     if settings["pictures"]:
-        files |= run_files.pictures_of(result, cloud)
-    else:
-        del files["report.html"]  # which shows the pictures
+        pictures = run_files.pictures_of(result, cloud)
+        facts = RunFacts(name=cloud.name, sha256=cloud.sha256, told=told, files=(*files, *pictures))
+        files |= pictures | run_files.report_of(result, facts, pictures)
     for name, make in files.items():
         if not _left_out(name, params):
             write_bytes(folder / name, make())
-    told = [("read", messages.warned(cloud.warnings)), *((part.part, part.messages) for part in parts)]
     document = messages.document_of_run(cloud.name, result.skeleton, told)
     seconds = {"read": read, **{part.part: result.seconds[part.part] for part in parts}}
     return {

@@ -42,6 +42,7 @@ def test_everything_of_a_run_is_said(result: PipelineResult) -> None:
         "Other than usual", "skeleton.ply", "roll.json", "ended because", "misfit",
     )  # fmt: skip
     assert [one for one in wanted if one not in words] == []
+    assert result.stability is not None
     assert result.stability.reason in words
 
 
