@@ -5,7 +5,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: help demo test debug check format data clean
+.PHONY: help demo test debug check format data dissertation clean
 
 help:
 	@echo "make demo    skeleton of a sample cloud: files and a picture in out/demo"
@@ -14,6 +14,7 @@ help:
 	@echo "make check   lint, format and types"
 	@echo "make format  format the code"
 	@echo "make data    make the sample clouds in data/ anew"
+	@echo "make dissertation   docs/dissertation.md: every claim of the dissertation with its verdict; resumable"
 	@echo "make clean   remove the virtual environment and what was made"
 	@echo "PYTHON=python3.12 chooses the interpreter (3.10 to 3.13), VENV=DIR the environment"
 
@@ -37,6 +38,9 @@ format: $(INSTALLED)
 
 data: $(INSTALLED)
 	data/make.sh $(BIN)/tiskel
+
+dissertation: $(INSTALLED)
+	$(BIN)/python benchmarks/dissertation $(ARGS)
 
 clean:
 	rm -rf $(VENV) out
