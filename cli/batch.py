@@ -53,7 +53,7 @@ def batch(
     curving: Mapping[str, Any],
     rolling: Mapping[str, Any],
 ) -> None:
-    """Do many clouds: what `tiskel run` does, a sub-folder each; resumable, on one machine or many.
+    """Do many clouds: all that run does, a sub-folder each; resumable, on one machine or many.
 
     `tiskel batch scans/ -o out/ --jobs 8 --timeout 600` and, with what failed, `tiskel batch @out/failed.txt -o out/`
     """

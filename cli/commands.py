@@ -51,7 +51,7 @@ COMMANDS = {
     ),
     "batch": Entry(
         "batch", "batch",
-        "Do many clouds: what `tiskel run` does, a sub-folder each; resumable, on one machine or many.",
+        "Do many clouds: all that run does, a sub-folder each; resumable, on one machine or many.",
     ),
     "shape": Entry(
         "shape", "shape", "Make a cloud whose curve skeleton is known: tubes, plants, blocks, torsos, wires.",
@@ -66,7 +66,7 @@ COMMANDS = {
         "doctor", "doctor", "Check the installation: versions, optional parts, threads, and that a kernel runs.",
         bare=True,
     ),
-    "slice": Entry("slice", "slice_command", "Fit a smooth surface around every branch of a skeleton, slice by slice."),
+    "slice": Entry("slice", "slice_command", "Fit a smooth surface around every branch of a skeleton, slice by slice, and one surface to the whole body."),
     "roll": Entry("roll", "roll", "Roll a sphere over a surface."),
     "plan": Entry("plan", "plan", "Plan how to roll a sphere from a contact to another, and to an attitude."),
 }  # fmt: skip

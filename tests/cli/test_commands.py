@@ -229,7 +229,7 @@ def test_missing_files_folders_and_wrong_stages(tiskel: Runner, cloud: Path, tmp
     assert "is a directory" in one_error_line(tiskel("contract", "."))
     assert "is a cloud file" in one_error_line(tiskel("skeleton", cloud.name))
     assert "a contraction file is needed" in one_error_line(tiskel("skeleton", "-", data=cloud.read_bytes()))
-    assert "cannot be written as 'dwg'" in one_error_line(tiskel("skeleton", cloud.name, "-o", "a.dwg"))
+    assert "cannot be written as '.dwg'" in one_error_line(tiskel("skeleton", cloud.name, "-o", "a.dwg"))
     assert "cannot write" in tiskel("contract", cloud.name, "-o", "no/such/folder/c.ply").stderr.decode()
     (tmp_path / "file").write_text("")
     assert "cannot make the folder" in one_error_line(tiskel("run", cloud.name, "-o", "file/out"))

@@ -127,7 +127,7 @@ def _flat(things: Iterable[Any]) -> Iterable[Any]:
     """Yield things one by one, out of lists and results of a whole pipeline."""
     for thing in things:
         if isinstance(thing, PipelineResult):
-            yield from _flat((thing.skeleton, thing.quality, thing.surfaces or (), thing.trajectories))
+            yield from _flat((thing.skeleton, thing.quality or (), thing.surfaces or (), thing.trajectories))
         elif isinstance(thing, Surfaces):
             yield thing
         elif isinstance(thing, (list, tuple)):
