@@ -66,9 +66,14 @@ COMMANDS = {
         "doctor", "doctor", "Check the installation: versions, optional parts, threads, and that a kernel runs.",
         bare=True,
     ),
-    "slice": Entry("slice", "slice_command", "Fit a smooth surface around every branch of a skeleton, slice by slice, and one surface to the whole body."),
+    "slice": Entry(
+        "slice", "slice_command",
+        "Fit a smooth surface around every branch of a skeleton, slice by slice, and one surface to the whole body.",
+    ),
     "roll": Entry("roll", "roll", "Roll a sphere over a surface."),
-    "plan": Entry("plan", "plan", "Plan how to roll a sphere from a contact to another, and to an attitude."),
+    "plan": Entry(
+        "plan", "plan", "Plan how to roll a sphere from a contact to another, and to an attitude, without slip.",
+    ),
 }  # fmt: skip
 
 

@@ -357,7 +357,7 @@ def test_broken_surface_files_end_with_one_line(banana: Surfaces) -> None:
         "damaged": damaged(data, surfaces=[{**one, "rows": [10**6]}]),
         "different intervals": damaged(data, surfaces=[{**one, "series": one["series"][:-1]}]),
         "damaged surface": damaged(data, cloud="none"),
-        "finite rows": damaged(data, surfaces=[{**one, "field": [[float("nan")] * 3] * len(one["field"])}]),
+        "must be finite": damaged(data, surfaces=[{**one, "field": [[float("nan")] * 3] * len(one["field"])}]),
         "write one with tiskel slice": data[: len(data) // 2],
         "not a surface": b"[1, 2]",
     }
