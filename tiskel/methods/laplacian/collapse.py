@@ -30,17 +30,22 @@ def inherited_edges(rings: Rings, owner: Indices, nodes: Points) -> Edges:
     (e, 2) int32
         Pairs of samples, the lower first, ascending, each once.
     """
-    owners = np.where(rings.mask(), owner[rings.members], owner[:, None])
-    foreign = owners != owner[:, None]
-    found = foreign.any(axis=1)
-    first = np.take_along_axis(owners, foreign.argmax(axis=1)[:, None], axis=1)[:, 0]
-    edges = np.sort(np.stack([owner[found], first[found]], axis=1), axis=1)
+    edges = np.sort(first_foreign(rings, owner), axis=1)
     alone = np.setdiff1d(np.arange(len(nodes)), edges)
     if len(alone) and len(nodes) > 1:
         nearest = cKDTree(nodes).query(nodes[alone], k=2)[1]
         partner = np.where(nearest[:, 0] == alone, nearest[:, 1], nearest[:, 0])
         edges = np.concatenate([edges, np.sort(np.stack([alone, partner], axis=1), axis=1)])
     return np.unique(edges, axis=0).astype(np.int32)
+
+
+def first_foreign(rings: Rings, owner: Indices) -> Edges:
+    """Return (p, 2) the sample of each point with a foreign ring member, and that of the first one in ring order."""
+    owners = np.where(rings.mask(), owner[rings.members], owner[:, None])
+    foreign = owners != owner[:, None]
+    found = foreign.any(axis=1)
+    first = np.take_along_axis(owners, foreign.argmax(axis=1)[:, None], axis=1)[:, 0]
+    return np.stack([owner[found], first[found]], axis=1)
 
 
 def collapse_triangles(nodes: Points, edges: Edges) -> tuple[Points, Edges, Indices]:

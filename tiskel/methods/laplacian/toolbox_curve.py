@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import Edges, Indices, Lists, Points
 from tiskel.geometry.rings import Rings
+from tiskel.methods.laplacian.collapse import first_foreign
 
 STRAIGHT = -0.98  # cosine between the ways to both neighbours [T]
 
@@ -20,12 +21,8 @@ def join_counts(rings: Rings, owner: Indices, nodes: Points) -> Lists:
 
     A sample that is joined to none is joined to its nearest one, once.
     """
-    owners = np.where(rings.mask(), owner[rings.members], owner[:, None])
-    foreign = owners != owner[:, None]
-    found = foreign.any(axis=1)
-    first = np.take_along_axis(owners, foreign.argmax(axis=1)[:, None], axis=1)[:, 0]
     counts = np.zeros((len(nodes), len(nodes)), np.int32)
-    np.add.at(counts, (owner[found], first[found]), 1)
+    np.add.at(counts, tuple(first_foreign(rings, owner).T), 1)
     counts += counts.T
     alone = np.flatnonzero(~counts.any(axis=1))
     if len(alone) and len(nodes) > 1:
