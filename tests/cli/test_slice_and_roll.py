@@ -232,7 +232,8 @@ def test_run_slices_and_rolls_and_says_where_it_cannot(tiskel: Runner, tmp_path:
     runs = json.loads((tmp_path / "out" / "roll.json").read_bytes())["runs"]
     assert [(run["rtol"], run["atol"]) for run in runs] == [(1e-4, 1e-7)] * 2
     report = (tmp_path / "out" / "report.html").read_text()
-    assert "Rolling sphere" in report
+    figure = r'<img src="data:image/png;base64,[^"]{1000,}" alt="Where the sphere rolls[^"]*">'
+    assert re.search(figure + r'<figcaption>[^<]*<a href="roll.png"', report)
     assert "inside" in report
     too_large = tiskel("run", "b.ply", "-o", "large", "--side", "inside", "--sphere", 9)
     assert too_large.returncode == 0
