@@ -116,8 +116,9 @@ def test_named_numbers_become_properties_and_words_do_not() -> None:
 
 
 def test_columns_of_other_names_are_said() -> None:
-    named = READ["three names"].replace("easting", "first").encode()
-    assert "were taken as x, y and z" in text.read(named, "a").warnings[0]
+    for said in ("easting, northing, height", "first, northing, height"):
+        data = READ["three names"].replace("easting", said.partition(",")[0]).encode()
+        assert f"{said} were taken as x, y and z" in text.read(data, "a").warnings[0]
 
 
 def test_empty_cells_are_no_numbers_and_shift_no_row() -> None:

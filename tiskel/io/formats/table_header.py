@@ -44,7 +44,8 @@ def columns_of(names: Sequence[str], name: str) -> Columns:
     ----------
     names : sequence of str
         Of all columns. x, y and z in either case count, alone, with a unit (X(m), x_mm), or as ParaView writes them
-        (Points:0); where there are three columns without these names, they are taken in order, with a warning.
+        (Points:0); easting, northing and height do, too, with a warning; where there are three columns without these
+        names, they are taken in order, with a warning.
     name : str
         The file's name, for messages.
 
@@ -65,13 +66,19 @@ def columns_of(names: Sequence[str], name: str) -> Columns:
     """
     axes = named(names)
     if axes is not None:
-        return Columns(axes, {key: i for i, key in enumerate(names) if i not in axes and key})
+        surveyed = all(_surveyed(names[i]) for i in axes)
+        said = (_taken(name, ", ".join(names[i] for i in axes)),) if surveyed else ()
+        return Columns(axes, {key: i for i, key in enumerate(names) if i not in axes and key}, said)
     rest = [i for i, key in enumerate(names) if not INDEX.fullmatch(key.lower())]
     found = ", ".join(key or "(no name)" for key in names)
     misplaced = any(_plain(names[i]) in AXES and AXES[at] != _plain(names[i]) for at, i in enumerate(rest[:3]))
     if len(rest) != 3 or misplaced:
         raise TiskelError(f"{name}: its columns are {short(found)}; name those of the coordinates x, y and z")
-    return Columns((rest[0], rest[1], rest[2]), {}, (f"{name}: its columns {short(found)} were taken as x, y and z",))
+    return Columns((rest[0], rest[1], rest[2]), {}, (_taken(name, found),))
+
+
+def _taken(name: str, found: str) -> str:
+    return f"{name}: its columns {short(found)} were taken as x, y and z"
 
 
 def named(names: Sequence[str]) -> tuple[int, int, int] | None:
