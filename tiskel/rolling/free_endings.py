@@ -9,12 +9,10 @@ import numpy as np
 from tiskel.arrays import Numbers
 from tiskel.params import RollParams
 from tiskel.rolling.ambient import AmbientRate, least_curvature
+from tiskel.rolling.endings import DEEPEST, SUNK, TOUCHING
 from tiskel.rolling.second import Surroundings
 from tiskel.rolling.trajectory import RollStatus
 
-TOUCHING = 1e-4  # of 1/R_s: with less left the contact runs away, and no solver follows it
-SUNK = 0.05  # of its radius: where a second place lies deeper in the sphere, it is met
-DEEP = 0.2  # of its radius: no point of the cloud may lie deeper in the sphere, wherever
 WORTH = {"any": 0, "seen": 1, "measured": 2}  # as surfaces count: see tiskel.Trust
 
 
@@ -63,7 +61,7 @@ def watches(rate: AmbientRate, around: Surroundings, params: RollParams) -> list
         return around.second(rate.place(y), centre(y)).gap
 
     def clear(y: Numbers) -> float:
-        return float(around.clear(centre(y)[None])[0] - (1 - DEEP))
+        return float(around.clear(centre(y)[None])[0] - (1 - DEEPEST))
 
     found = [
         Watch(RollStatus.TIGHT, "lambda_min(K_o) + 1/R_s is 0: the surface bends as sharply as the sphere", margin)
@@ -79,7 +77,7 @@ def watches(rate: AmbientRate, around: Surroundings, params: RollParams) -> list
         )  # fmt: skip
     if params.meet:
         if around.cloud is not None:
-            found.append(Watch(RollStatus.MET, f"points of the cloud lie {DEEP:g} of its radius deep in it", clear))
+            found.append(Watch(RollStatus.MET, f"points of the cloud lie {DEEPEST:g} of its radius deep in it", clear))
         if params.on_meeting == "follow":
             found.append(Watch(RollStatus.MET, "it touches the surface a second time", second, follows=True))
         else:

@@ -1,6 +1,5 @@
 """The stage ``roll``: a surface and a twist in, the way of a sphere over the surface out."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from tiskel.rolling.equations import frame_turn, margin
 from tiskel.rolling.inputs import Inputs, constant, of_the_object
 from tiskel.rolling.models import RollingModel, model_of, tube_of
 from tiskel.rolling.reading import read, ways_of
-from tiskel.rolling.solution import duration_of, solve
+from tiskel.rolling.solution import duration_of, solve, told_of
 from tiskel.rolling.sphere import orientation, quaternion_of, quaternion_rate, rotation_of
 from tiskel.rolling.trajectory import RollStatus, Trajectory, told_inputs, told_slip
 from tiskel.slicing.fitted import FittedSurface
@@ -85,7 +84,7 @@ def roll(
     start, far = _start(surface, params, radius)
     _check_start(surface, params, radius, start, watched)
     rate = _Rate(model, params, inputs)
-    told = rate if progress is None else _told(rate, duration_of(params, inputs), span)
+    told = rate if progress is None else told_of(rate, duration_of(params, inputs), span)
     solution = solve(told, start, params, inputs, radius, watched)
     ways = ways_of(model, radius, solution)
     lengths = float(ways[-1, 0]), float(ways[-1, 1])
@@ -133,20 +132,6 @@ class _Rate:
         a, b, c = frame_turn(forms, moving)
         # In the axes of the contact frame the sphere turns by -omega, and the frame itself turns.
         return *moving, *quaternion_rate((-omega[0] - a, -omega[1] - b, -omega[2] - c), q)
-
-
-def _told(rate: _Rate, duration: float, span: Span) -> Callable[[float, Numbers], tuple[float, ...]]:
-    """Return the right-hand side, telling how much of the duration is solved, a hundred times at most."""
-    reached = 0.0
-
-    def call(t: float, y: Numbers) -> tuple[float, ...]:
-        nonlocal reached
-        if (share := min(1.0, t / duration)) >= reached:
-            span.at(share, "motion")
-            reached = share + 0.01
-        return rate(t, y)
-
-    return call
 
 
 def _start(surface: ParametricSurface, params: RollParams, radius: float) -> tuple[Numbers, tuple[str, ...]]:

@@ -1,6 +1,5 @@
 """The stage ``roll`` without a chart: over joints, ends and caps of a whole body, or any implicit surface."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +15,7 @@ from tiskel.rolling.free_reading import read_free
 from tiskel.rolling.free_solution import solve_stretches
 from tiskel.rolling.inputs import Inputs, constant
 from tiskel.rolling.second import Surroundings
-from tiskel.rolling.solution import duration_of, longest_step
+from tiskel.rolling.solution import duration_of, longest_step, told_of
 from tiskel.rolling.trajectory import RollStatus, Trajectory
 from tiskel.surfaces.implicit import ImplicitSurface
 
@@ -73,7 +72,7 @@ def roll_on(
     watched = watches(rate, around, params)
     _check_start(rate, watched, start)
     duration = duration_of(params, inputs)
-    told = rate if progress is None else _told(rate, duration, span)
+    told = rate if progress is None else told_of(rate, duration, span)
     found = solve_stretches(rate, told, start, duration, longest_step(inputs, ground.radius), params, around, watched)
     span.at(1)
     return read_free(rate, found, params)
@@ -98,17 +97,3 @@ def _check_start(rate: AmbientRate, watched: list[Watch], start: Numbers) -> Non
             )
     if not finite(rate(0.0, start)):
         raise TiskelError(f"nothing is known of the surface at {rate.origin.tolist()}; start elsewhere")
-
-
-def _told(rate: AmbientRate, duration: float, span: Span) -> "Callable[[float, Numbers], Numbers]":
-    """Return the right-hand side, telling how much of the duration is solved, a hundred times at most."""
-    reached = 0.0
-
-    def call(t: float, y: Numbers) -> Numbers:
-        nonlocal reached
-        if (share := min(1.0, t / duration)) >= reached:
-            span.at(share, "motion")
-            reached = share + 0.01
-        return rate(t, y)
-
-    return call

@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from tiskel.arrays import Numbers, Table
 from tiskel.params import RollParams
+from tiskel.progress import Span
 from tiskel.rolling.endings import Ending
 from tiskel.rolling.inputs import Inputs
 from tiskel.rolling.trajectory import RollStatus
 
+R = TypeVar("R")
 USUAL_DURATION = 10.0  # seconds
 STRIDE = 0.4  # radians that the body turns in a step of the solver at most: endings are looked for between steps
 
@@ -106,3 +108,17 @@ def _ending(solved: Any, watched: Sequence[Ending]) -> tuple[RollStatus, str]:
         if solved.status == 1 and len(times):
             return ending.status, f"{ending.what}, at t = {times[-1]:.4g} s"
     return RollStatus.STUCK, f"{solved.message}, at t = {stop:.4g} s"
+
+
+def told_of(rate: Callable[[float, Numbers], R], duration: float, span: Span) -> Callable[[float, Numbers], R]:
+    """Return the right-hand side, telling how much of the duration is solved, a hundred times at most."""
+    reached = 0.0
+
+    def call(t: float, y: Numbers) -> R:
+        nonlocal reached
+        if (share := min(1.0, t / duration)) >= reached:
+            span.at(share, "motion")
+            reached = share + 0.01
+        return rate(t, y)
+
+    return call
