@@ -2,13 +2,14 @@
 
     python benchmarks/batch.py                      # all parts, 216 clouds
     python benchmarks/batch.py --count 24 --parts resume,throughput
-    python benchmarks/batch.py --write              # into benchmarks/speed/batch.csv and .md
+    python benchmarks/batch.py --write              # into benchmarks/scale/batch.md, throughput into benchmarks/speed
 
 Every part says what it saw, and ends the script where that is not what should
 be. Clouds are of random shapes, 400 to 1000 points, clean and noisy, by seed;
 kills come at random moments, by the same seed. Throughput is that of a batch
-under way: clouds after the first of every process, over the time since; the
-four ways of using the machine take turns.
+under way, of clouds that cost the same (hands of 1000 points): those after the
+first of every process, over the time since; the ways of using the machine take
+turns. It wants a machine that does nothing else.
 """
 
 import argparse
@@ -16,7 +17,6 @@ import json
 import os
 import random
 import signal
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -28,20 +28,20 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tables import Row, shown, written
+from batch_rates import throughput
+from tables import shown, surroundings, written
 
-from tiskel import PipelineParams, ShapeParams, make_shape, named_shape
-from tiskel.batch import Plan, Settled, find_tasks, run_batch
+from tiskel import ShapeParams, make_shape, named_shape
 from tiskel.batch.owner import started
 from tiskel.gallery.families import GROUPS
 from tiskel.io.clouds import dump_cloud
-from tiskel.params import BatchParams
 
 PROGRAM = f"import sys; sys.path[:] = {sys.path!r}; sys.argv[0] = 'tiskel'; from tiskel.cli.app import main; main()"
 STAGES = "contract,skeleton,metrics"
 OWN = {"manifest.jsonl", "summary.csv", "failed.txt"}
 KILLS = 3
 LONGEST = 3600.0  # seconds that a batch may take here
+SAID = Path(__file__).parent / "scale" / "batch.md"
 BAD = {
     "empty.ply": b"",
     "words.xyz": b"this is\nno cloud\n",
@@ -234,38 +234,6 @@ def _wait_for_workers(address: str, count: int) -> None:
         client.wait_for_workers(count, timeout=120)
 
 
-WAYS = {"1 job, 1 thread": (1, 1), "2 jobs, 1 thread each": (2, 1), "1 job, 2 threads": (1, 2)}
-
-
-def throughput(scans: Path, folder: Path, rounds: int, count: int) -> list[Row]:
-    """Return clouds per minute of every way, and its ratio to the first, medians over rounds in turn."""
-    tasks = find_tasks([str(scans)], folder / "any")[:count]
-    rates: dict[str, list[float]] = {way: [] for way in WAYS}
-    for number in range(rounds):
-        for way, (jobs, threads) in WAYS.items():
-            rates[way].append(_rate(tasks, folder / f"{jobs}-{threads}-{number}", jobs, threads))
-    first = rates[next(iter(WAYS))]
-    return [
-        {
-            "way": way,
-            "clouds per minute": f"{statistics.median(of):.1f}",
-            "to the first": f"{statistics.median(a / b for a, b in zip(of, first, strict=True)):.2f}",
-            "rounds": " ".join(f"{a / b:.2f}" for a, b in zip(of, first, strict=True)),
-        }
-        for way, of in rates.items()
-    ]
-
-
-def _rate(tasks: list[Any], output: Path, jobs: int, threads: int) -> float:
-    params = PipelineParams(stages=("contract", "skeleton", "metrics"))
-    plan = Plan(
-        output=output, work="tiskel.cli.batch_work:work", params=BatchParams(jobs=jobs, threads=threads),
-        settings={"params": params, "weights": None, "history": False, "pictures": False},
-    )  # fmt: skip
-    times = [time.perf_counter() for news in run_batch(tasks, plan) if isinstance(news, Settled)]
-    return 60.0 * (len(times) - jobs - jobs) / (times[-1 - jobs + 1] - times[jobs - 1])  # all are at work in between
-
-
 PARTS: dict[str, Callable[[Path, Path, Path], str]] = {
     "resume": resume, "broken": broken, "shards": shards, "leases": leases, "cluster": cluster,
 }  # fmt: skip
@@ -284,6 +252,7 @@ def main() -> None:
         folder, scans = Path(name), Path(name, "scans")
         make_clouds(scans, given.count)
         whole = folder / "whole"
+        rows = throughput(folder, given.rounds, given.few) if "throughput" in parts else []
         if set(parts) & set(PARTS):
             start = time.perf_counter()
             counts = batch(scans, whole, "--jobs", 2)
@@ -292,11 +261,17 @@ def main() -> None:
         for part in (part for part in PARTS if part in parts):
             said.append(f"{part}: {PARTS[part](scans, whole, folder)}")
             print(said[-1], flush=True)
-        rows = throughput(scans, folder, given.rounds, given.few) if "throughput" in parts else []
     if rows:
         print(shown(rows))
-    if given.write:
-        written("batch", rows, "\n".join(["`python benchmarks/batch.py`", "", *(f"- {line}" for line in said)]))
+        if given.write:
+            written("batch", rows, "Hands of 1000 points: `python benchmarks/batch.py --parts throughput`.")
+    if said and given.write:
+        lines = [
+            f"`python benchmarks/batch.py --count {given.count}`",
+            surroundings(),
+            "\n".join(f"- {s}" for s in said),
+        ]
+        SAID.write_text("\n\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":
