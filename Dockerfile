@@ -3,7 +3,7 @@ FROM python:3.12-slim AS build
 WORKDIR /source
 COPY . .
 RUN python -m venv /opt/tiskel \
- && /opt/tiskel/bin/pip install --no-cache-dir --constraint constraints.txt '.[cluster]'
+ && /opt/tiskel/bin/pip install --no-cache-dir --constraint constraints.txt '.[full,cluster]'
 
 FROM python:3.12-slim
 COPY --from=build /opt/tiskel /opt/tiskel

@@ -7,7 +7,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from tiskel.cli import console, descriptors
+from tiskel.cli import console, descriptors, logbook
 from tiskel.cli.commands import MARKUP, Commands
 from tiskel.errors import TiskelError
 
@@ -43,7 +43,8 @@ def _print_version(wanted: bool) -> None:
 @app.callback()
 def common(
     version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop.")
+        bool,
+        typer.Option("--version", "-V", callback=_print_version, is_eager=True, help="Print the version and stop."),
     ] = False,
 ) -> None:
     """Take the options that come before the command."""
@@ -58,6 +59,7 @@ def main() -> None:
     except TiskelError as error:
         _fail(str(error), error)
     except Interrupted:
+        logbook.ended("interrupted", console.session.began)
         console.errors().print("interrupted")
         _leave(INTERRUPTED)
     except BrokenPipeError:

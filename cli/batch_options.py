@@ -5,6 +5,7 @@ from typing import Annotated, get_args
 
 import typer
 
+from tiskel.cli.words import chosen, completes_list
 from tiskel.errors import TiskelError
 from tiskel.params import STAGES, BatchParams, Stage
 
@@ -31,7 +32,7 @@ Folder = Annotated[
 Stages = Annotated[
     str,
     typer.Option(
-        "--stages", metavar="LIST", rich_help_panel="Method",
+        "--stages", metavar="LIST", rich_help_panel="Method", autocompletion=completes_list(*STAGES, PICTURES),
         help=f"Which are written: {', '.join((*STAGES, PICTURES))}, with commas. The first two are always done.",
     ),
 ]  # fmt: skip
@@ -78,8 +79,7 @@ def stages_of(words: str) -> tuple[tuple[Stage, ...], bool]:
     named = [word.strip() for word in words.split(",") if word.strip()]
     known = (*get_args(Stage), PICTURES)
     for word in named:
-        if word not in known:
-            raise TiskelError(f"--stages: no stage {word!r}; there are {', '.join(known)}")
+        chosen("--stages", word, known)
     return tuple(stage for stage in STAGES if stage in named), PICTURES in named
 
 

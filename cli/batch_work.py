@@ -43,7 +43,7 @@ def work(path: Path, folder: Path, settings: Any) -> dict[str, Any]:
     files = run_files.files_of(result, cloud, history=settings["history"])
     told = [("read", messages.warned(cloud.warnings)), *((part.part, part.messages) for part in parts)]
     if settings["pictures"]:
-        pictures = run_files.pictures_of(result, cloud)
+        pictures = run_files.pictures_of(result, cloud) if stages.can_draw() else {}
         facts = RunFacts(name=cloud.name, sha256=cloud.sha256, told=told, files=(*files, *pictures))
         files |= pictures | run_files.report_of(result, facts, pictures)
     for name, make in files.items():

@@ -18,6 +18,7 @@ COMMON: dict[str, tuple[Any, Any]] = {
     "verbose": (options.Verbose, False),
     "strict": (options.Strict, False),
     "log_file": (options.LogFile, None),
+    "config": (options.ConfigFile, None),
 }
 INPUT: dict[str, tuple[Any, Any]] = {
     "columns": (options.Columns, CONDITIONING.columns),
@@ -49,10 +50,11 @@ LOOKING: dict[str, tuple[Any, Any]] = {
 
 
 def common(command: Command) -> Command:
-    """Add --threads, --quiet, --verbose, --strict and --log, and act on them before and after the command runs."""
+    """Add the options of all commands, --threads to --config, and act on them before and after the command runs."""
 
     def run(**arguments: Any) -> None:
-        begin(**{name: arguments.pop(name) for name in COMMON})
+        settings = dict(arguments)
+        begin(settings, **{name: arguments.pop(name) for name in COMMON})
         command(**arguments)
         end()
 

@@ -2,12 +2,14 @@
 
 import contextlib
 import functools
-import logging
-import sys
+import time
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from tiskel.cli import logbook
+from tiskel.cli.logbook import log
 from tiskel.errors import TiskelError
 from tiskel.messages import Messages
 from tiskel.wording import printable, shortened
@@ -25,32 +27,26 @@ class Session:
     verbose: bool = False
     strict: bool = False
     warned: list[str] = field(default_factory=list)
+    began: float = 0.0
 
 
 session = Session()
-log = logging.getLogger("tiskel")
-log.addHandler(logging.NullHandler())  # or Python prints warnings on stderr a second time
-log.propagate = False
 
 
-def begin(*, threads: int | None, quiet: bool, verbose: bool, strict: bool, log_file: Path | None) -> None:
-    """Take over the common options before the command does anything."""
+def begin(
+    settings: Mapping[str, Any], *, threads: int | None, quiet: bool, verbose: bool, strict: bool,
+    log_file: Path | None, config: Path | None,
+) -> None:  # fmt: skip
+    """Take over the common options before the command does anything; what config says is among the settings."""
     import os
 
     session.quiet, session.verbose, session.strict = quiet, verbose, strict
+    session.began = time.perf_counter()
     session.warned.clear()
     if threads is not None:
         os.environ["TISKEL_NUM_THREADS"] = str(threads)
     if log_file is not None:
-        try:
-            handler = _LogFile(log_file, encoding="utf-8", errors="backslashreplace")
-        except (OSError, ValueError) as error:
-            said = getattr(error, "strerror", None) or error
-            raise TiskelError(f"cannot write the log {log_file}: {said}; name another file with --log") from None
-        handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
-        log.addHandler(handler)
-        log.setLevel(logging.INFO)
-        log.info("%s", printable(" ".join(sys.argv[1:])))
+        logbook.open_log(log_file, settings, lambda reason: warn((reason,)))
 
 
 @functools.cache
@@ -72,6 +68,7 @@ def fail(message: str) -> None:
     """Say why the program ends: in the log, and on stderr however quiet it is to be."""
     said = shortened(printable(message))
     log.error(said)
+    logbook.ended("failed", session.began)
     with contextlib.suppress(OSError):  # nobody can be told
         errors().print(f"error: {said}", markup=False)
 
@@ -79,18 +76,6 @@ def fail(message: str) -> None:
 def _print(message: str) -> None:
     with contextlib.suppress(OSError):  # a full disk behind standard error is no reason to stop
         errors().print(printable(message), markup=False)
-
-
-class _LogFile(logging.FileHandler):
-    """A log that is given up, with one warning, where it can no longer be written."""
-
-    def handleError(self, record: logging.LogRecord) -> None:
-        """Say it once, and write no more."""
-        log.removeHandler(self)
-        reason = getattr(sys.exc_info()[1], "strerror", None) or sys.exc_info()[1]
-        with contextlib.suppress(OSError):
-            self.stream = None
-        warn((f"the log {self.baseFilename} cannot be written: {reason}",))
 
 
 def warn(messages: tuple[str, ...]) -> None:
@@ -108,15 +93,21 @@ def end() -> None:
         first, *others = session.warned
         more = f" and {len(others)} more" if others else ""
         raise TiskelError(f"{first} (an error because of --strict{more}; what was made is written)")
+    logbook.ended("done", session.began)
 
 
 def tell(messages: Messages) -> None:
-    """Say what the stages have to say, warnings as warnings."""
+    """Say what the stages have to say, warnings as warnings; details with --verbose only, and in the log."""
+    hidden = not session.verbose and any(message.detail for message in messages)
     for message in messages:
         if message.warning:
             warn((message.text,))
+        elif message.detail and not session.verbose:
+            log.info(printable(message.text))
         else:
             say(message.text)
+    if hidden:
+        say("--verbose has a line for each of them")
 
 
 def table(title: str, columns: list[str], rows: list[list[str]]) -> "Table":

@@ -9,18 +9,17 @@ import typer
 from tiskel.cli import console
 from tiskel.cli.common import common
 from tiskel.errors import TiskelError
+from tiskel.extras import ADVICE, there
 
-NEEDED = {
-    "numpy": "numpy",
-    "scipy": "scipy",
-    "taichi": "taichi",
-    "plyfile": "plyfile",
-    "matplotlib": "matplotlib",
-    "networkx": "networkx",
-    "ripser": "ripser",
-}
+NEEDED = ("numpy", "scipy", "taichi", "plyfile", "typer", "rich")
 OPTIONAL = {
+    "ripser": f"loops of the surface in tiskel metrics; {ADVICE}",
+    "matplotlib": f"pictures, films, --cap; {ADVICE}",
+    "networkx": f"GraphML, graphs in Python; {ADVICE}",
     "cvxopt": "--solver cholmod; pip install 'tiskel[cholmod]'",
+    "laspy": "LAS and LAZ; pip install 'tiskel[las]'",
+    "e57": "E57; pip install 'tiskel[e57]'",
+    "distributed": "tiskel batch --scheduler; pip install 'tiskel[cluster]'",
 }
 
 
@@ -30,10 +29,13 @@ def doctor() -> None:
     from tiskel import __version__
 
     lines = [("tiskel", __version__, True), ("python", platform.python_version(), True)]
-    lines += [(name, *_state(module)) for name, module in NEEDED.items()]
+    lines += [(name, *_state(name)) for name in NEEDED]
     for name, remark in OPTIONAL.items():
-        version, there = _state(name)
-        lines.append((name, version if there else f"not usable ({version}); optional: {remark}", True))
+        if not there(name):
+            lines.append((name, f"not installed; optional: {remark}", True))
+            continue
+        version, usable = _state(name)
+        lines.append((name, version if usable else f"not usable ({version}); optional: {remark}", True))
     lines += _kernels()
     for name, remark, fine in lines:
         typer.echo(f"{'ok ' if fine else 'BAD'} {name:12} {remark}")

@@ -1,6 +1,7 @@
 """``tiskel info``."""
 
 import json
+import math
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,8 @@ from tiskel.cli.progress import reading, shown
 if TYPE_CHECKING:
     from tiskel.arrays import Points
 
+DIGITS = 6  #: of a number in the table; JSON has all of them
+
 
 @common
 def info(source: o.Source, columns: o.Columns = None, as_json: o.AsJson = False) -> None:
@@ -26,7 +29,7 @@ def info(source: o.Source, columns: o.Columns = None, as_json: o.AsJson = False)
     if as_json or not sys.stdout.isatty():
         typer.echo(json.dumps(facts, allow_nan=False))
         return
-    rows = [[key, str(value)] for key, value in _flat(facts)]
+    rows = [[key, rounded(value, _size(facts["cloud"]))] for key, value in _flat(facts)]
     from rich.console import Console
 
     Console().print(console.table(str(source), ["what", "value"], rows))
@@ -98,3 +101,20 @@ def _flat(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
     for key, value in facts.items():
         rows += _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else [(f"{prefix}{key}", value)]
     return rows
+
+
+def rounded(value: Any, size: float = 0.0) -> str:
+    """Return a value as the table shows it: coordinates to a hundred-thousandth of the size, else six digits."""
+    if isinstance(value, list):
+        return ", ".join(rounded(one, size) for one in value)
+    if not isinstance(value, float):
+        return str(value)
+    if size > 0 and math.isfinite(value) and abs(value) >= size:  # six digits would not tell ends of a far box apart
+        return f"{value:.{max(0, DIGITS - 1 - math.floor(math.log10(size)))}f}"
+    return f"{value:.{DIGITS}g}"
+
+
+def _size(extent: dict[str, Any]) -> float:
+    """Return the longest side of a bounding box; 0 where there is none."""
+    low, high = extent.get("min", ()), extent.get("max", ())
+    return max((float(b) - float(a) for a, b in zip(low, high, strict=True)), default=0.0)

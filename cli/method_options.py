@@ -5,6 +5,7 @@ from typing import Annotated, Any
 import typer
 
 from tiskel.cli.surface_options import three
+from tiskel.cli.words import completes
 from tiskel.params import (
     GlsParams,
     LbcParams,
@@ -21,12 +22,13 @@ ROBUST, GLS, LBC = RobustParams(), GlsParams(), LbcParams()
 PUBLISHED = "gls and lbc"
 
 
-def _setting(kind: Any, metavar: str | None, meaning: str, method: str, default: object) -> Any:
+def _setting(kind: Any, metavar: str | None, meaning: str, method: str, default: object, words: Any = None) -> Any:
     """Return an option without a value of its own that names its method and the default there."""
     told = "" if default is None else f" [default: {default}]"
     whose = "" if method == "all" else f" ({method})"
     option = typer.Option(
-        metavar=metavar, help=f"{meaning}{whose}.{told}", show_default=False, rich_help_panel="Method"
+        metavar=metavar, help=f"{meaning}{whose}.{told}", show_default=False, rich_help_panel="Method",
+        autocompletion=words,
     )  # fmt: skip
     return Annotated[kind | None, option]
 
@@ -60,7 +62,7 @@ CONTRACTING: dict[str, Option] = {
     "max_points": (
         _setting(
             str, "N|auto|all", "Points that fronts run over at most, the others go with the nearest: so many, as many "
-            "as the surface of a large cloud needs, or all", "robust", ROBUST.max_points,
+            "as the surface of a large cloud needs, or all", "robust", ROBUST.max_points, completes("auto", "all"),
         ), None,
     ),
     "least_part": (

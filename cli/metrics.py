@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tiskel.cli import console, stages
+from tiskel.cli import console, logbook, stages
 from tiskel.cli import options as o
 from tiskel.cli.common import common, looks
 from tiskel.cli.progress import reading, shown
@@ -86,7 +86,9 @@ Similar = Annotated[
     float,
     typer.Option("--similar", metavar="D", help="d*, distances of similar topology.", rich_help_panel="Method"),
 ]
-MetricSeed = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.", rich_help_panel="Method")]
+MetricSeed = Annotated[
+    int, typer.Option("--seed", min=0, metavar="N", help="Of everything random.", rich_help_panel="Method")
+]
 AsCsv = Annotated[bool, typer.Option("--csv", help="CSV instead of JSON.", rich_help_panel="Output")]
 HeatFile = Annotated[
     Path | None,
@@ -158,6 +160,7 @@ def _measure(
     console.warn(tuple(f"{m.name}: {line}" for line in quality.warnings))
     if quality.correspondence == "nearest":
         console.say(f"{m.name}: no correspondence; the nearest points of the cloud stand in for the originals")
+    logbook.timed(quality.seconds)
     if console.session.verbose:
         total = sum(quality.seconds.values())
         shares = ", ".join(f"{part} {s:.3f} s ({s / total:.0%})" for part, s in quality.seconds.items())
@@ -199,17 +202,18 @@ def _show(measured: list[Measured], as_json: bool, as_csv: bool) -> None:
 
 
 def _table(documents: list[dict[str, Any]]):  # type: ignore[no-untyped-def]
-    """Return one column per skeleton, the best values bold and starred, reasons where there is no value."""
-    from tiskel.metrics.tables import COLUMNS, best_rows, row_of, said
+    """Return one column per skeleton, the best values starred, what is good, and reasons where there is no value."""
+    from tiskel.metrics.tables import COLUMNS, SIGNS, best_rows, row_of, said
 
     rows = [row_of(d) for d in documents]
     best = best_rows(rows)
     lines = []
     for column in COLUMNS:
-        shown = [said(row[column.key]) for row in rows]
-        marked = [f"[bold]{text} *[/]" if (i, column.key) in best else text for i, text in enumerate(shown)]
+        shown = [said(row[column.key]) + " *" * ((i, column.key) in best) for i, row in enumerate(rows)]
         reasons = [d[column.path[0]].get("reasons", {}).get(column.path[1], "") for d in documents]
-        lines.append([column.heading, *marked, "; ".join(dict.fromkeys(filter(None, reasons)))])
-    heads = ["measure", *(d["file"] for d in documents), "why not"]
+        lines.append([column.heading, *shown, column.good, "; ".join(dict.fromkeys(filter(None, reasons)))])
+    heads = ["measure", *(d["file"] for d in documents), "good", "why not"]
     width = len(heads) if any(line[-1] for line in lines) else len(heads) - 1
-    return console.table("skeleton quality", heads[:width], [line[:width] for line in lines])
+    made = console.table("skeleton quality", heads[:width], [line[:width] for line in lines])
+    made.caption, made.caption_justify = SIGNS, "left"
+    return made

@@ -5,6 +5,9 @@ from typing import Annotated
 
 import typer
 
+from tiskel.cli import settings_file
+from tiskel.cli.words import completes
+from tiskel.extras import extra
 from tiskel.params import ConditioningParams, Method, NoiseKind, PipelineParams
 
 CONDITIONING = ConditioningParams()
@@ -12,6 +15,21 @@ PIPELINE = PipelineParams()
 SAMPLE = "auto"  #: of --sample: all points of a cloud; of a mesh as many as its thickness asks for
 MOST_THREADS = 1024  #: as the kernels have it
 METHOD: Method = PIPELINE.contraction.method
+
+
+def drawn(path: Path | None) -> Path | None:
+    """Refuse a picture before the work begins, where nothing is installed to draw it with."""
+    if path is not None:
+        extra("matplotlib", "a picture")
+    return path
+
+
+def capped(wanted: bool) -> bool:
+    """Refuse --cap before the work begins, where nothing is installed to fill ends with."""
+    if wanted:
+        extra("matplotlib", "--cap")
+    return wanted
+
 
 Source = Annotated[Path, typer.Argument(metavar="IN", help="A file, or - for standard input.", show_default=False)]
 Output = Annotated[
@@ -49,7 +67,23 @@ Strict = Annotated[
 LogFile = Annotated[
     Path | None,
     typer.Option(
-        "--log", metavar="FILE", help="Append messages to a file.", show_default=False, rich_help_panel="Common"
+        "--log",
+        metavar="FILE",
+        help="Append to a file what was run, with versions, settings and times, and all messages.",
+        show_default=False,
+        rich_help_panel="Common",
+    ),
+]
+ConfigFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--config",
+        metavar="FILE",
+        help="Settings in TOML, a table for each command: [run] method = 'lbc'. The command line goes first.",
+        show_default=False,
+        is_eager=True,
+        callback=settings_file.apply,
+        rich_help_panel="Common",
     ),
 ]
 
@@ -84,6 +118,7 @@ Sample = Annotated[
     str | None,
     typer.Option(
         metavar="auto|N",
+        autocompletion=completes(SAMPLE),
         help="A random subset of so many points. Of a mesh, the points to sample; auto: as its thickness asks for.",
         show_default=False,
         rich_help_panel="Input",
@@ -99,7 +134,7 @@ Crop = Annotated[
     ),
 ]
 Outliers = Annotated[bool, typer.Option("--outliers", help="Remove statistical outliers.", rich_help_panel="Input")]
-Cap = Annotated[bool, typer.Option("--cap", help="Close open tube ends.", rich_help_panel="Input")]
+Cap = Annotated[bool, typer.Option("--cap", help="Close open tube ends.", callback=capped, rich_help_panel="Input")]
 Noise = Annotated[
     float, typer.Option(metavar="SHARE", help="Add Gaussian noise, for experiments.", rich_help_panel="Input")
 ]
@@ -111,7 +146,7 @@ NoiseKindName = Annotated[
         rich_help_panel="Input",
     ),
 ]
-Seed = Annotated[int, typer.Option(min=0, help="Of everything random.", rich_help_panel="Input")]
+Seed = Annotated[int, typer.Option(min=0, metavar="N", help="Of everything random.", rich_help_panel="Input")]
 
 AsJson = Annotated[bool, typer.Option("--json", help="JSON on a terminal too.", rich_help_panel="Output")]
 Summary = Annotated[
@@ -128,6 +163,7 @@ Plot = Annotated[
         "--plot",
         metavar="OUT",
         help="Also a picture: PNG, SVG or PDF.",
+        callback=drawn,
         show_default=False,
         rich_help_panel="Output",
     ),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tiskel import messages
-from tiskel.cli import console, stages
+from tiskel.cli import console, logbook, stages
 from tiskel.cli import options as o
 from tiskel.cli import surface_options as so
 from tiskel.cli.common import common, contracts, curves, looks, reads_cloud, rolls
@@ -75,8 +75,9 @@ def run(
         )
     drawing = time.perf_counter()
     with shown("pictures"):
-        pictures = pictures_of(result, cloud, look)
+        pictures = pictures_of(result, cloud, look) if stages.can_draw() else {}
     seconds = {"read": read - start, **result.seconds, "pictures": time.perf_counter() - drawing}
+    logbook.timed(seconds)
     files = files_of(result, cloud, history=history) | pictures
     files["timings.json"] = (json.dumps(seconds, indent=1) + "\n").encode
     told = [("read", messages.warned(cloud.warnings)), *((done.part, done.messages) for done in parts)]

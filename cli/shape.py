@@ -6,21 +6,27 @@ from typing import Annotated
 import typer
 
 from tiskel.cli import options as o
-from tiskel.cli import stages
+from tiskel.cli import stages, words
 from tiskel.cli.common import common
 from tiskel.cli.progress import shown
 from tiskel.cli.skeleton import format_of
 from tiskel.params import ShapeParams
+from tiskel.wording import meant
 
 SHAPE = ShapeParams()
 SCAN = "Scan"
 
-Name = Annotated[str | None, typer.Argument(metavar="[NAME]", help="A shape; none lists them.", show_default=False)]
+Name = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="NAME", help="A shape; none lists them.", show_default=False, autocompletion=words.shape_names
+    ),
+]
 Count = Annotated[int, typer.Option("-n", "--count", min=1, metavar="N", help="Points.")]
 Noise = Annotated[float, typer.Option(metavar="F", help="Gaussian noise, in smallest radii of the shape.")]
 Missing = Annotated[float, typer.Option(metavar="F", help="Share of the surface cut out in patches.")]
 Uneven = Annotated[float, typer.Option(metavar="F", help="Ratio of highest to lowest density.")]
-Seed = Annotated[int, typer.Option(min=0, help="Of everything random.")]
+Seed = Annotated[int, typer.Option(min=0, metavar="N", help="Of everything random.")]
 View = Annotated[
     list[str] | None,
     typer.Option(
@@ -74,13 +80,16 @@ def shape(
     if name is None:
         typer.echo(listing())
         return
+    if name not in (every := words.all_shapes()):
+        said = f"no shape is called {name!r}.{meant(name, every)} tiskel shape lists all {len(every)}"
+        raise typer.BadParameter(said, param_hint="NAME")
     params = ShapeParams(
         count=count,
         noise=noise,
         missing=missing,
         uneven=uneven,
         seed=seed,
-        views=tuple(direction(words) for words in view or ()),
+        views=tuple(direction(one) for one in view or ()),
         sensor_distance=sensor_distance,
         sensor_noise=sensor_noise,
         table=table,
@@ -93,9 +102,9 @@ def shape(
         stages.write(skeleton, lambda: EXPORTS[format_of(None, str(skeleton))](truth))
 
 
-def direction(words: str) -> tuple[float, float, float]:
+def direction(given: str) -> tuple[float, float, float]:
     """Return the three numbers of a direction; raise TiskelError where they are others."""
-    x, y, z = stages.numbers_of("--view", words, 3)
+    x, y, z = stages.numbers_of("--view", given, 3)
     return x, y, z
 
 

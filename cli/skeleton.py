@@ -54,18 +54,17 @@ def skeleton(
     curving: Mapping[str, Any],
     look: LookParams,
 ) -> None:
-    """Turn a contracted cloud into a curve skeleton.
+    """Turn a contracted cloud, or a cloud, into a curve skeleton.
 
-    Reads contraction.ply, writes skeleton.ply, which Open3D, trimesh and plyfile read as a line set; CloudCompare and
-    MeshLab show lines from OBJ: `tiskel contract scan.ply | tiskel skeleton - -o curve.obj`. What may be wrong with
-    the curve: `tiskel skeleton c.ply -o curve.ply --json | jq .warnings`
+    Reads contraction.ply, or a cloud, which is contracted by the default method first: `tiskel skeleton scan.ply -o
+    curve.ply`. Writes skeleton.ply, which Open3D, trimesh and plyfile read as a line set; CloudCompare and MeshLab show
+    lines from OBJ: `tiskel contract scan.ply | tiskel skeleton - -o curve.obj`. What may be wrong with the curve:
+    `tiskel skeleton c.ply -o curve.ply --json | jq .warnings`
     """
     chosen = format_of(format_name, str(output or ""))
     params = SkeletonParams(**curving)
     from tiskel import extract_skeleton
     from tiskel.io.exports import EXPORTS, branches_csv
-    from tiskel.io.ply import source_of
-    from tiskel.io.stages.contraction import parse_contraction
     from tiskel.io.stages.skeleton import dump_skeleton
     from tiskel.io.streams import read_bytes
 
@@ -75,7 +74,8 @@ def skeleton(
     stages.check_targets(branches)
     with shown(reading(source)) as progress:
         data = read_bytes(source)
-        made = extract_skeleton(parse_contraction(data, str(source)), params, progress=progress)
+        contraction, origin = stages.contracted(data, source, progress)
+        made = extract_skeleton(contraction, params, progress=progress)
     console.tell(messages.of_skeleton(made))
     if plot is not None:
         from tiskel.pictures.canvas import picture_kind
@@ -83,7 +83,7 @@ def skeleton(
 
         stages.write(plot, lambda: skeleton_picture(made, source.name, picture_kind(str(plot)), look))
     if chosen == "ply":
-        stages.write(target, lambda: dump_skeleton(made, source_of(data, "contraction", str(source))))
+        stages.write(target, lambda: dump_skeleton(made, origin))
     else:
         stages.write(target, lambda: EXPORTS[chosen](made))
     if branches is not None:

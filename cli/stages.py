@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 from tiskel import messages
 from tiskel.cli import console
 from tiskel.errors import TiskelError
-from tiskel.params import ConditioningParams, ContractionParams, params_class, settings_of
+from tiskel.extras import ADVICE, there
+from tiskel.params import ConditioningParams, ContractionParams, PipelineParams, params_class, settings_of
 
 if TYPE_CHECKING:
     from tiskel.arrays import Numbers
     from tiskel.contraction import Contraction
     from tiskel.io.clouds import Cloud
+    from tiskel.progress import Report
 
 LONGEST_STEM = 100  #: characters of the input's name that the output's begins with
 STAGE_SUFFIXES = (".ply", ".json", ".csv")  #: of outputs that have one format each
@@ -62,8 +64,7 @@ def read_cloud(source: Path, params: ConditioningParams) -> "Cloud":
 
     chosen: dict[str, Any] = {"columns": params.columns, "classification": params.classification}
     cloud = load_cloud(source, mesh_samples=params.sample, seed=params.seed, **chosen)
-    console.warn(cloud.warnings)
-    console.tell(messages.said(cloud.notes))
+    tell_read(cloud)
     return cloud
 
 
@@ -82,6 +83,34 @@ def contraction_params(method: str, given: Mapping[str, Any]) -> ContractionPara
     solver = os.environ.get("TISKEL_SOLVER")
     usual = {"solver": solver} if solver and "solver" in settings_of(params_class(method)) else {}
     return ContractionParams(method=method, **{**usual, **given})
+
+
+def contracted(data: bytes, source: Path, progress: "Report | None") -> "tuple[Contraction, dict[str, str]]":
+    """Return the contraction in the bytes of a file, or that of the cloud in them, and what it was made from."""
+    from tiskel import condition, contract
+    from tiskel.io.clouds import parse_cloud
+    from tiskel.io.ply import source_of
+    from tiskel.io.stages.contraction import parse_contraction
+    from tiskel.io.stages.which import stage_of
+
+    if stage_of(data) not in {None, "cloud"}:
+        return parse_contraction(data, str(source)), source_of(data, "contraction", str(source))
+    cloud, params = parse_cloud(data, source), contraction_params(PipelineParams().contraction.method, {})
+    tell_read(cloud)
+    console.say(
+        f"{cloud.name} is a cloud: contracted first, by method {params.method}; tiskel contract has other settings"
+    )
+    points, report = condition(cloud.points, ConditioningParams())
+    console.tell(messages.said(report))
+    made = contract(points, params, None, cloud.surface, progress=progress)
+    tell_contraction(made)
+    return made, cloud.source
+
+
+def tell_read(cloud: "Cloud") -> None:
+    """Tell what there is to say of a cloud that was read."""
+    console.warn(cloud.warnings)
+    console.tell(messages.said(cloud.notes))
 
 
 def tell_contraction(c: "Contraction") -> None:
@@ -181,3 +210,11 @@ def _number(word: str) -> float:
         return float(word)
     sign, factor, divisor = found.groups()
     return float(f"{sign}1") * float(factor or 1) * math.pi / float(divisor or 1)
+
+
+def can_draw() -> bool:
+    """Tell whether pictures can be drawn; say what is missing where they cannot."""
+    if there("matplotlib"):
+        return True
+    console.say(f"no pictures: they need matplotlib; {ADVICE}")
+    return False

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import typer
 
-from tiskel.cli.options import PIPELINE
+from tiskel.cli.options import PIPELINE, drawn
 from tiskel.cli.stages import numbers_of
+from tiskel.cli.words import chosen, completes
 from tiskel.errors import TiskelError
 from tiskel.params import FrameRule, Model, Normals, OrderRule, RollParams, Side, SurfaceParams, Twist
 from tiskel.params.roll import OnMeeting, Trusted
@@ -33,7 +34,14 @@ def joined(values: tuple[float, ...] | str) -> str:
 M, OMEGA, VELOCITY, START = (joined(values) for values in (SURFACE.m, ROLL.omega, ROLL.velocity, ROLL.start))
 
 Branch = Annotated[
-    str, typer.Option("--branch", metavar="B|longest|all", help="Which branches.", rich_help_panel="Method")
+    str,
+    typer.Option(
+        "--branch",
+        metavar="B|longest|all",
+        help="Which branches.",
+        autocompletion=completes("longest", "all"),
+        rich_help_panel="Method",
+    ),
 ]
 Interval = Annotated[
     float,
@@ -45,6 +53,7 @@ FrameField = Annotated[
         "--m",
         metavar="x,y,z|normal|rotation-minimising",
         help="Direction that sets where u is 0.",
+        autocompletion=completes(*get_args(FrameRule)),
         rich_help_panel="Method",
     ),
 ]
@@ -147,7 +156,12 @@ Atol = Annotated[
 Animate = Annotated[
     Path | None,
     typer.Option(
-        "--animate", metavar="OUT", help="Also a film: GIF or HTML.", show_default=False, rich_help_panel="Output"
+        "--animate",
+        metavar="OUT",
+        help="Also a film: GIF or HTML.",
+        show_default=False,
+        rich_help_panel="Output",
+        callback=drawn,
     ),
 ]
 
@@ -161,6 +175,8 @@ def surface_params(branch: str, interval: float, m: str, order_rule: OrderRule, 
 
 def _direction(m: str) -> tuple[float, float, float] | FrameRule:
     rules: tuple[FrameRule, ...] = get_args(FrameRule)
+    if m[:1].isalpha() and "," not in m:
+        chosen("--m", m, rules)
     return next((rule for rule in rules if m == rule), None) or three("--m", m)
 
 

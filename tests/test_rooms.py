@@ -11,13 +11,14 @@ ROOT = Path(__file__).parents[1]
 LINKS = (ROOT / "tiskel" / "cli", ROOT / "tiskel" / "kernels")
 
 # A room, and the rooms that it may import from, besides itself. Anything not named here fails.
-BASE = "errors arrays params timing progress wording"
+BASE = "errors arrays params timing progress wording extras"
 GEOMETRY = f"{BASE} kernels geometry"
 STAGES = f"{GEOMETRY} methods contraction skeleton"
 ALLOWED = {
     "kernels": "",
     "errors": "kernels",  # the error is defined there, so that a kernel can raise it
     "version": "",
+    "extras": "errors",
     "timing": "",
     "wording": "",
     "progress": "",

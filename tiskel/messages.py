@@ -1,6 +1,8 @@
 """What the stages tell a user: the lines of every result, worded here and nowhere else."""
 
-from collections.abc import Iterable, Sequence
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,13 +14,27 @@ if TYPE_CHECKING:
     from tiskel.slicing.fitted import FittedSurface, Surfaces
     from tiskel.surfaces.patches import BodySurface
 
+NAMED = 5  #: branches, or reasons, that a summary names
+OF_BRANCH = re.compile(r"branch (\S+): (.*)", re.DOTALL)  #: a line about one branch
+
 
 @dataclass(frozen=True)
 class Message:
-    """One line for a user; a warning where the result may not be what they think it is."""
+    """One line for a user; a warning where the result may not be what they think it is.
+
+    Attributes
+    ----------
+    text : str
+        The line.
+    warning : bool
+        Whether it is a warning.
+    detail : bool
+        Whether another line sums it up, with others of its kind.
+    """
 
     text: str
     warning: bool = False
+    detail: bool = False
 
 
 Messages = tuple[Message, ...]
@@ -80,12 +96,61 @@ def of_stability(stability: "Stability") -> Messages:
 
 
 def of_surfaces(surfaces: "Surfaces") -> Messages:
-    """Return a line for every surface, why other branches have none, coverage, that of the body, then the warnings."""
-    rejected = (f"branch {name} has no surface: {reason}" for name, reason in surfaces.rejected.items())
+    """Return the surfaces, in one line where there are several, why other branches have none, coverage, warnings."""
     body = () if surfaces.body is None else (surfaces.body,)
     warnings = (warning for surface in (*surfaces, *body) for warning in surface.warnings)
-    told = (*said(map(_surface, surfaces)), *said(rejected), *of_coverage(surfaces), *said(map(_body, body)))
-    return (*told, *warned(warnings))
+    told = (*_of_branches(surfaces), *_of_rejected(surfaces.rejected), *of_coverage(surfaces), *said(map(_body, body)))
+    return (*told, *warned(grouped(warnings)))
+
+
+def grouped(lines: Iterable[str]) -> list[str]:
+    """Return lines, those that say the same of several branches as one.
+
+    Examples
+    --------
+    >>> from tiskel.messages import grouped
+    >>> grouped(["branch 0: it folds", "whole body: it leaks", "branch 4: it folds"])
+    ['branches 0, 4: it folds', 'whole body: it leaks']
+    """
+    names: dict[str, list[str]] = {}
+    for line in lines:
+        found = OF_BRANCH.fullmatch(line)
+        name, text = found.groups() if found else ("", line)
+        names.setdefault(text, []).append(name)
+    return [_of_names(which) + text for text, which in names.items()]
+
+
+def _of_names(names: list[str]) -> str:
+    named = [name for name in names if name]
+    more = f" and {len(named) - NAMED} more" if len(named) > NAMED else ""
+    return f"branch{'es' * (len(named) > 1)} {', '.join(named[:NAMED])}{more}: " if named else ""
+
+
+def _of_branches(surfaces: "Surfaces") -> Messages:
+    lines = [_surface(surface) for surface in surfaces]
+    if len(lines) < 2:
+        return said(lines)
+    fitted = list(surfaces)
+    ranges = ", ".join(
+        f"{name} {min(values):.3g} to {max(values):.3g}"
+        for name, values in (
+            ("lengths", [s.length for s in fitted]),
+            ("radii", [s.radius for s in fitted]),
+            ("mean distances to their points", [s.distance["mean"] for s in fitted]),
+        )
+    )
+    return (Message(f"{len(lines)} branches have surfaces: {ranges}"), *(Message(line, detail=True) for line in lines))
+
+
+def _of_rejected(rejected: "Mapping[str, str]") -> Messages:
+    lines = [f"branch {name} has no surface: {reason}" for name, reason in rejected.items()]
+    if len(lines) < 2:
+        return said(lines)
+    counts = Counter(rejected.values()).most_common()
+    reasons = "; ".join(f"{reason} ({count})" for reason, count in counts[:NAMED])
+    more = f"; {len(counts) - NAMED} other reasons" if len(counts) > NAMED else ""
+    summary = Message(f"{len(lines)} branches have no surface: {reasons}{more}")
+    return (summary, *(Message(line, detail=True) for line in lines))
 
 
 def of_coverage(surfaces: "Surfaces") -> Messages:

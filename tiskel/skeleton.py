@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.contraction import Contraction
 from tiskel.errors import TiskelError
+from tiskel.extras import extra
 from tiskel.geometry.branch_table import BranchRow, branch_table
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph
@@ -111,9 +112,7 @@ class Skeleton(CurveGraph):
         "modelled", "unknown") and regime ("tube", "sheet", "wire",
         "unknown"), edges length and bridged.
         """
-        import networkx
-
-        network = networkx.Graph()
+        network = extra("networkx", "a graph of networkx").Graph()
         sources, regimes = labels(RadiusSource, self.radius_sources), labels(Regime, self.regimes)
         said = zip(self.nodes.tolist(), self.radii.tolist(), sources, regimes, strict=True)
         for i, ((x, y, z), radius, source, regime) in enumerate(said):

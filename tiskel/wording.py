@@ -1,6 +1,7 @@
 """Words from elsewhere (names of files, elements, branches) made fit to be shown."""
 
 import unicodedata
+from collections.abc import Iterable
 
 LONGEST = 300  #: characters of a message; what is longer loses its middle
 HIDDEN = ("Cc", "Cf", "Cs", "Co", "Zl", "Zp")  #: categories that a terminal acts on, or cannot show: escapes, marks
@@ -27,3 +28,20 @@ def shortened(text: str, longest: int = LONGEST) -> str:
     """Return a text of at most so many characters: its beginning and its end."""
     half = (longest - 3) // 2
     return text if len(text) <= longest else f"{text[:half]}...{text[-half:]}"
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """Return a question after the known word that is most like a misspelt one, with a blank before it; or nothing.
+
+    Examples
+    --------
+    >>> from tiskel.wording import meant
+    >>> meant("bananna", ["banana", "hand"])
+    " Did you mean 'banana'?"
+    >>> meant("unicorn", ["banana", "hand"])
+    ''
+    """
+    from difflib import get_close_matches
+
+    near = get_close_matches(word.lower(), list(known), n=1)
+    return f" Did you mean {near[0]!r}?" if near else ""

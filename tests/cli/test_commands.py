@@ -227,8 +227,9 @@ def test_broken_rows_are_dropped_counted_and_said(tiskel: Runner, capsule: np.nd
 def test_missing_files_folders_and_wrong_stages(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:
     assert "no file nowhere.ply" in one_error_line(tiskel("contract", "nowhere.ply"))
     assert "is a directory" in one_error_line(tiskel("contract", "."))
-    assert "is a cloud file" in one_error_line(tiskel("skeleton", cloud.name))
-    assert "a contraction file is needed" in one_error_line(tiskel("skeleton", "-", data=cloud.read_bytes()))
+    tiskel("skeleton", cloud.name, "-o", "s.ply")
+    assert "is a skeleton file, a contraction file is needed" in one_error_line(tiskel("skeleton", "s.ply"))
+    assert "a contraction file is needed" in one_error_line(tiskel("stability", "-", data=cloud.read_bytes()))
     assert "cannot be written as '.dwg'" in one_error_line(tiskel("skeleton", cloud.name, "-o", "a.dwg"))
     assert "cannot write" in tiskel("contract", cloud.name, "-o", "no/such/folder/c.ply").stderr.decode()
     (tmp_path / "file").write_text("")
@@ -237,7 +238,6 @@ def test_missing_files_folders_and_wrong_stages(tiskel: Runner, cloud: Path, tmp
 
 def test_wrong_values_and_wrong_usage(tiskel: Runner, cloud: Path) -> None:
     assert "--crop needs 6 numbers" in one_error_line(tiskel("contract", cloud.name, "--crop", "1,2"))
-    assert "no shape is called 'unicorn'" in one_error_line(tiskel("shape", "unicorn"))
     assert "TISKEL_NUM_THREADS must be" in tiskel("contract", cloud.name, TISKEL_NUM_THREADS="many").stderr.decode()
     for words in (
         ("contract",),

@@ -14,6 +14,7 @@ from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.round_cones import ConeGraph, sample_union
 from tiskel.params import ShapeParams
 from tiskel.skeleton import Skeleton
+from tiskel.wording import meant
 
 PATCHES = 8  # holes that --missing is spread over
 
@@ -35,7 +36,7 @@ def shape_graph(name: str) -> ConeGraph:
     Raises
     ------
     TiskelError
-        For another name; the message lists them all.
+        For another name; the message has the one that is most like it, and lists them all.
 
     Examples
     --------
@@ -45,7 +46,9 @@ def shape_graph(name: str) -> ConeGraph:
     (1, 0)
     """
     if name not in SHAPES:
-        raise TiskelError(f"no shape is called {name!r}; choose one of {', '.join(SHAPES)}")
+        raise TiskelError(
+            f"no shape is called {name!r};{meant(name, SHAPES).lower()} choose one of {', '.join(SHAPES)}"
+        )
     return SHAPES[name]()
 
 
@@ -76,7 +79,7 @@ def named_shape(name: str) -> Shape:
     """
     every = {name: make for group in GROUPS.values() for name, make in group.items()}
     if name not in every:
-        raise TiskelError(f"no shape is called {name!r}; choose one of {', '.join(every)}")
+        raise TiskelError(f"no shape is called {name!r};{meant(name, every).lower()} choose one of {', '.join(every)}")
     return every[name]()
 
 

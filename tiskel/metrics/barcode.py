@@ -13,6 +13,7 @@ from scipy import sparse
 from scipy.spatial import Delaunay
 
 from tiskel.arrays import FLATNESS, TINY, Edges, Numbers, Points, Table
+from tiskel.extras import extra
 from tiskel.geometry.graph import edge_lengths
 from tiskel.geometry.spanning import spanning_tree
 
@@ -70,11 +71,10 @@ def barcode(points: Points, *, loops: bool = False) -> Barcode:
 
 def _cycles(points: Points) -> Table:
     """Return births and deaths in H1, by falling ratio."""
-    from ripser import ripser
-
     edges = delaunay_edges(points)
     lengths = edge_lengths(points, edges)
     distances = sparse.coo_matrix((lengths, (edges[:, 0], edges[:, 1])), shape=(len(points), len(points)))
+    ripser = extra("ripser", "H1").ripser
     bars = np.asarray(ripser(distances.tocsr(), maxdim=1, distance_matrix=True)["dgms"][1], np.float64)
     return np.asarray(bars[np.argsort(-bars[:, 1] / bars[:, 0], kind="stable")])
 

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from tiskel.arrays import Mask, Numbers, Points
 from tiskel.errors import TiskelError
+from tiskel.extras import there
 from tiskel.geometry.air import in_the_air
 from tiskel.geometry.clearance import CloudBody
 from tiskel.geometry.curve import CurveSamples, curve_samples
@@ -129,8 +130,9 @@ def _topology_and_loops(
     """Return both, from one barcode where the skeletal points stand for the whole cloud."""
     with watch.measure("loops"):
         part = _loop_part(subject, surface, params)
-        bars = barcode(part.points, loops=True)
-        loops = count_loops(bars.cycles, part, subject, params)
+        told = there("ripser")
+        bars = barcode(part.points, loops=told)
+        loops = count_loops(bars.cycles if told else None, part, subject, params)
     with watch.measure("topology"):
         topology = _topology(subject, part.points, bars, params)
     return topology, loops

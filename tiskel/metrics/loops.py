@@ -15,8 +15,10 @@ them than its surface has loops is not decided: each handle is one of those.
 from dataclasses import dataclass
 
 from tiskel.arrays import Table
+from tiskel.extras import ADVICE
 from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.solid import solid_handles
+from tiskel.metrics.barcode import NO_CYCLES
 from tiskel.metrics.subject import Subject
 from tiskel.params import MetricParams
 
@@ -49,13 +51,13 @@ class Loops:
     reasons: dict[str, str]
 
 
-def count_loops(bars: Table, surface: OrientedCloud, subject: Subject, params: MetricParams) -> Loops:
+def count_loops(bars: Table | None, surface: OrientedCloud, subject: Subject, params: MetricParams) -> Loops:
     """Count the loops of a surface, of the solid inside it, and of a curve.
 
     Parameters
     ----------
-    bars : (b, 2) float64
-        Births and deaths of the surface in H1, in normalised units.
+    bars : (b, 2) float64 or None
+        Births and deaths of the surface in H1, in normalised units; None where there is nothing to compute them with.
     surface : OrientedCloud
         The points that the bars were taken from, with normals.
     subject : Subject
@@ -67,13 +69,15 @@ def count_loops(bars: Table, surface: OrientedCloud, subject: Subject, params: M
     -------
     Loops
     """
-    lasting = int((bars[:, 1] >= params.loop_ratio * bars[:, 0]).sum())
+    lasting = None if bars is None else int((bars[:, 1] >= params.loop_ratio * bars[:, 0]).sum())
     solid, reason = solid_handles(surface)
-    if solid is not None and solid > lasting:  # every handle of the solid is a loop of its surface, too
+    if solid is not None and lasting is not None and solid > lasting:  # each handle is a loop of the surface, too
         reason = f"{solid} handles, but only {lasting} loops of the surface last; the cloud is too sparse for its tubes"
         solid = None
     reasons = {"solid": reason} if reason else {}
+    if lasting is None:
+        reasons["surface"] = f"it needs ripser; {ADVICE}"
     curve = subject.curve.loops if subject.curve_given else None
     if curve is None:
         reasons["graph"] = "no curve was given"
-    return Loops(lasting, solid, curve, bars, len(surface.points), reasons)
+    return Loops(lasting, solid, curve, NO_CYCLES if bars is None else bars, len(surface.points), reasons)

@@ -23,11 +23,14 @@ class Column:
         The heading of its column.
     best : str
         Which value is best: "high", "low", or nothing where none is.
+    good : str
+        What a good value is, in words.
     """
 
     path: tuple[str, str]
     heading: str
     best: str = ""  #: "high", "low" or nothing
+    good: str = ""
 
     @property
     def key(self) -> str:
@@ -35,27 +38,32 @@ class Column:
         return "_".join(self.path)
 
 
+SHARE = "near 1"  #: of a share of points or of places on the curve that are as they should be
 COLUMNS = (
-    Column(("topology", "bottleneck"), "d_B", "low"),
-    Column(("topology", "wasserstein"), "d_W", "low"),
-    Column(("boundedness", "points"), "bounded points", "high"),
-    Column(("boundedness", "curve"), "bounded curve", "high"),
-    Column(("inside", "points"), "inside points", "high"),
-    Column(("inside", "curve"), "inside curve", "high"),
-    Column(("medialness", "curve"), "medial curve", "high"),
-    Column(("air", "curve"), "curve in the air", "low"),
-    Column(("centredness", "points"), "centred points", "high"),
-    Column(("centredness", "curve"), "centred curve", "high"),
-    Column(("smoothness", "points"), "smooth points", "high"),
-    Column(("smoothness", "curve"), "smooth curve", "high"),
-    Column(("loops", "surface"), "loops surface"),
+    Column(("topology", "bottleneck"), "d_B", "low", "near 0"),
+    Column(("topology", "wasserstein"), "d_W", "low", "near 0"),
+    Column(("boundedness", "points"), "bounded points", "high", SHARE),
+    Column(("boundedness", "curve"), "bounded curve", "high", SHARE),
+    Column(("inside", "points"), "inside points", "high", SHARE),
+    Column(("inside", "curve"), "inside curve", "high", SHARE),
+    Column(("medialness", "curve"), "medial curve", "high", SHARE),
+    Column(("air", "curve"), "curve in the air", "low", "0"),
+    Column(("centredness", "points"), "centred points", "high", SHARE),
+    Column(("centredness", "curve"), "centred curve", "high", SHARE),
+    Column(("smoothness", "points"), "smooth points", "high", SHARE),
+    Column(("smoothness", "curve"), "smooth curve", "high", SHARE),
+    Column(("loops", "surface"), "loops surface", good="2 x solid"),
     Column(("loops", "solid"), "loops solid"),
-    Column(("loops", "graph"), "loops curve"),
-    Column(("graph", "components"), "components"),
-    Column(("graph", "ends"), "ends"),
-    Column(("graph", "joints"), "joints"),
+    Column(("loops", "graph"), "loops curve", good="as solid"),
+    Column(("graph", "components"), "components", good="as the body"),
+    Column(("graph", "ends"), "ends", good="as the body"),
+    Column(("graph", "joints"), "joints", good="as the body"),
     Column(("graph", "length"), "length"),
 )
+SIGNS = (
+    "* best of its row. d_B, d_W: how far the barcodes of cloud and skeletal points are apart, in sizes scaled to 1.6. "
+    "Points are those of the contraction, curve is the graph; their values are means or shares, from 0 to 1."
+)  #: what the signs of a table mean
 
 
 def row_of(document: Document) -> dict[str, Value]:

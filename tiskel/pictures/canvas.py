@@ -12,6 +12,7 @@ import numpy as np
 
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
+from tiskel.extras import extra
 from tiskel.geometry.views import View, broad_view
 from tiskel.params import LookParams
 from tiskel.pictures.style import CLOUD, INK, SCALE, SIZES, faded
@@ -37,8 +38,7 @@ def new_figure(width: float, height: float) -> Any:
 def _load() -> None:
     """Import matplotlib, also where MPLBACKEND names a backend that there is not: none is needed here."""
     asked = None if "matplotlib" in sys.modules else os.environ.pop("MPLBACKEND", None)
-    import matplotlib
-
+    matplotlib = extra("matplotlib", "a picture")
     if asked is not None:
         os.environ["MPLBACKEND"] = asked
         with contextlib.suppress(ValueError):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from tiskel.arrays import Indices, Lists, Numbers, Points
+from tiskel.extras import extra
 from tiskel.geometry.graph import connected_sets
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.spacing import spacings_from
@@ -79,8 +80,7 @@ def _groups(boundary: Indices, neighbours: Lists) -> list[Indices]:
 
 def _disc(rim: Points, spacing: float) -> Points:
     """Fill the polygon of a rim; nothing where the group does not go round its centre."""
-    from matplotlib.path import Path as Polygon
-
+    polygon = extra("matplotlib.path", "--cap").Path
     centre = rim.mean(axis=0)
     plane = np.linalg.svd(rim - centre, full_matrices=False)[2][:2]
     flat = (rim - centre) @ plane.T
@@ -93,5 +93,5 @@ def _disc(rim: Points, spacing: float) -> Points:
     grid = np.stack(np.meshgrid(*(np.arange(a, b, spacing) for a, b in zip(low, high, strict=True))), axis=-1).reshape(
         -1, 2
     )
-    inside = Polygon(flat[order]).contains_points(grid, radius=-spacing / 2)
+    inside = polygon(flat[order]).contains_points(grid, radius=-spacing / 2)
     return np.asarray(centre + grid[inside] @ plane)

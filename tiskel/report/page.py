@@ -142,7 +142,7 @@ def _stages(facts: RunFacts) -> str:
     told = dict(facts.told)
     rows = []
     for part in dict.fromkeys((*told, *(name for name in facts.seconds if INNER not in name))):
-        lines = [("warning" if one.warning else "plain", one.text) for one in told.get(part, ())]
+        lines = [("warning" if one.warning else "plain", one.text) for one in told.get(part, ()) if not one.detail]
         inner = ", ".join(
             f"{name.partition(INNER)[2]} {seconds:.2f}" for name, seconds in facts.seconds.items()
             if name.startswith(part + INNER) and seconds >= LEAST_SECONDS

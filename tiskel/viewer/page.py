@@ -7,6 +7,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from tiskel.extras import there
 from tiskel.pictures.canvas import with_palette
 from tiskel.viewer.packed import pack
 from tiskel.viewer.scene import Remark, Scene
@@ -58,7 +59,6 @@ def viewer(scene: Scene, *, alone: bool = False) -> str:
         Whether the page holds nothing else; then the wheel always zooms.
     """
     document, data = pack(scene)
-    picture = base64.b64encode(with_palette(still(scene, "png", STILL_POINTS))).decode()
     title = html.escape(scene.title)
     return MARKUP.format(
         alone=" data-alone" if alone else "",
@@ -66,10 +66,16 @@ def viewer(scene: Scene, *, alone: bool = False) -> str:
         said="".join(f"<p>{html.escape(line)}</p>" for line in scene.said),
         remarks=_remarks(scene),
         keys="".join(f"<tr><th>{html.escape(key)}</th><td>{html.escape(act)}</td></tr>" for key, act in KEYS),
-        picture=picture,
+        picture=_still(scene, title) if there("matplotlib") else "",
         document=_json(document),
         data=base64.b64encode(data).decode(),
     )
+
+
+def _still(scene: Scene, title: str) -> str:
+    """Return what stands in where there is no WebGL; drawing needs matplotlib."""
+    picture = base64.b64encode(with_palette(still(scene, "png", STILL_POINTS))).decode()
+    return f'<img alt="{title}" src="data:image/png;base64,{picture}">'
 
 
 def _json(document: Any) -> str:
@@ -110,7 +116,7 @@ MARKUP = """<div class="tiskel-viewer"{alone} tabindex="0" aria-label="{title}: 
 <div class="player" hidden><button type="button" aria-label="play">&#9654;</button>
 <input type="range" min="0" value="0" aria-label="time"><output></output></div>
 <div class="tip" hidden></div>
-<figure class="still"><img alt="{title}" src="data:image/png;base64,{picture}">
+<figure class="still">{picture}
 <figcaption>A still picture: this browser has no WebGL. {title}</figcaption></figure>
 <script type="application/json" class="scene">{document}</script>
 <script type="application/octet-stream" class="bytes">{data}</script>

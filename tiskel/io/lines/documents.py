@@ -4,6 +4,7 @@ import json
 import xml.etree.ElementTree as ET
 from typing import Any
 
+from tiskel.extras import extra
 from tiskel.geometry.labels import labels
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
@@ -110,8 +111,6 @@ def write_graphml(s: Skeleton) -> bytes:
     """Return GraphML with the attributes of :meth:`tiskel.Skeleton.to_networkx`."""
     import io
 
-    import networkx
-
     out = io.BytesIO()
-    networkx.write_graphml_xml(s.to_networkx(), out)
+    extra("networkx", "GraphML").write_graphml_xml(s.to_networkx(), out)
     return out.getvalue()
