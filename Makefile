@@ -4,8 +4,9 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
+TOOLS := $(VENV)-tools
 
-.PHONY: help demo test debug check format data dissertation clean
+.PHONY: help demo test debug check format data dissertation dist audit sbom clean
 
 help:
 	@echo "make demo    skeleton of a sample cloud: files and a picture in out/demo"
@@ -15,6 +16,9 @@ help:
 	@echo "make format  format the code"
 	@echo "make data    make the sample clouds in data/ anew"
 	@echo "make dissertation   docs/dissertation.md: every claim of the dissertation with its verdict; resumable"
+	@echo "make dist    source distribution and wheel in dist/, the same bytes from the same commit"
+	@echo "make audit   known vulnerabilities of what is installed"
+	@echo "make sbom    out/sbom.json: what is installed, in CycloneDX"
 	@echo "make clean   remove the virtual environment and what was made"
 	@echo "PYTHON=python3.12 chooses the interpreter (3.10 to 3.13), VENV=DIR the environment"
 
@@ -42,8 +46,25 @@ data: $(INSTALLED)
 dissertation: $(INSTALLED)
 	$(BIN)/python benchmarks/dissertation $(ARGS)
 
+dist: $(TOOLS)/.installed
+	rm -rf dist
+	SOURCE_DATE_EPOCH=$${SOURCE_DATE_EPOCH:-$$(git log -1 --format=%ct)} $(TOOLS)/bin/python -m build --outdir dist .
+	$(TOOLS)/bin/twine check --strict dist/*
+
+audit: $(INSTALLED) $(TOOLS)/.installed
+	$(TOOLS)/bin/pip-audit --path $$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+
+sbom: $(INSTALLED) $(TOOLS)/.installed
+	mkdir -p out
+	$(TOOLS)/bin/cyclonedx-py environment --output-reproducible --pyproject pyproject.toml --output-file out/sbom.json $(BIN)/python
+
 clean:
-	rm -rf $(VENV) out
+	rm -rf $(VENV) $(TOOLS) out dist build
+
+$(TOOLS)/.installed:
+	$(PYTHON) -m venv $(TOOLS)
+	$(TOOLS)/bin/python -m pip install --quiet build twine pip-audit cyclonedx-bom
+	touch $@
 
 $(INSTALLED): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)

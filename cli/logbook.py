@@ -2,11 +2,9 @@
 
 import json
 import logging
-import platform
 import sys
 import time
 from collections.abc import Mapping
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +60,9 @@ def timed(seconds: Mapping[str, float]) -> None:
 
 
 def _versions() -> dict[str, str]:
+    import platform
+    from importlib import metadata
+
     from tiskel import __version__
 
     own = {"tiskel": __version__, "python": platform.python_version()}

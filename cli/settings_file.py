@@ -6,6 +6,7 @@ from typing import Any
 
 import typer
 
+from tiskel.cli.table import COMMANDS
 from tiskel.wording import meant
 
 LARGEST = 1 << 20  # bytes of a settings file; what is larger is none
@@ -42,8 +43,6 @@ def remark(ctx: Any, name: str) -> str:
 
 def _tables(path: Path) -> dict[str, dict[str, Any]]:
     """Return the tables of a file, every one of which has the name of a command."""
-    from tiskel.cli.commands import COMMANDS
-
     found = _parsed(path)
     for name, table in found.items():
         if not isinstance(table, dict):

@@ -17,7 +17,7 @@ from tiskel import (
     read_contraction,
     read_skeleton,
 )
-from tiskel.cli.commands import COMMANDS
+from tiskel.cli.table import COMMANDS
 from tiskel.gallery.catalogue import SHAPES
 from tiskel.gallery.families import BODIES, GROUPS
 

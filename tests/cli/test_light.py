@@ -87,7 +87,7 @@ def test_what_needs_more_says_so_before_the_work(asked: Path, tmp_path: Path) ->
         "view s.ply -o s.png": picture,
         "convert s.ply s.graphml": "GraphML needs networkx; pip install 'tiskel[full]'",
         "convert s.ply s.node-link.json": "a graph of networkx needs networkx; pip install 'tiskel[full]'",
-        "contract a.ply --cap -o c.ply": "--cap needs matplotlib; pip install 'tiskel[full]'",
+        "contract nowhere.ply --cap": "--cap needs matplotlib; pip install 'tiskel[full]'",
     }
     runs = light([*refused, "run a.ply -o out", "view s.ply -o s.html", "doctor"], asked)
     for run, said in zip(runs, refused.values(), strict=False):

@@ -15,8 +15,8 @@ from reference.fixtures import PROGRAM, Runner
 from reference.forked import outcomes
 from tiskel import ShapeParams, contract, extract_skeleton, load_cloud, make_shape, shape_graph
 from tiskel.cli.app import app
-from tiskel.cli.commands import COMMANDS, PURPOSES
 from tiskel.cli.info import rounded
+from tiskel.cli.table import COMMANDS, PURPOSES
 from tiskel.io.clouds import dump_cloud
 from tiskel.io.stages.skeleton import dump_skeleton
 
