@@ -16,7 +16,7 @@ help:
 	@echo "make format  format the code"
 	@echo "make data    make the sample clouds in data/ anew"
 	@echo "make dissertation   docs/dissertation.md: every claim of the dissertation with its verdict; resumable"
-	@echo "make dist    source distribution and wheel in dist/, the same bytes from the same commit"
+	@echo "make dist    source distribution and wheel in dist/; the wheel is the same bytes from the same commit"
 	@echo "make audit   known vulnerabilities of what is installed"
 	@echo "make sbom    out/sbom.json: what is installed, in CycloneDX"
 	@echo "make clean   remove the virtual environment and what was made"

@@ -16,6 +16,7 @@ from tiskel.io.streams import BESIDE, STALE
 
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 SHAPES = ("y", "capsule", "cross")  #: one cloud of each; `run` takes the first, `batch` all
+LESS = ("--jobs", "2", "--threads", "1", "--stages", "contract,skeleton,metrics")  #: `run` has all the others
 POINTS = 250  #: of each cloud: a run is mostly start, files and pictures, where kills do most harm
 ENDS = 30.0  #: seconds that workers get to notice that their batch is gone; a loaded machine is slow
 OF_ITSELF = {"timings.json", "report.html", "manifest.jsonl", "summary.csv", "failed.txt"}  #: hold times or dates
@@ -51,7 +52,7 @@ def scenes(folder: Path) -> dict[str, Scene]:
         subprocess.run([PROGRAM, *words], cwd=folder, check=True, capture_output=True)
     made = {
         "run": Scene(["run", f"scans/{SHAPES[0]}.ply", "-o", "one", "-q"], folder, "one"),
-        "batch": Scene(["batch", "scans", "-o", "many", "-q", "--jobs", "2", "--threads", "1"], folder, "many"),
+        "batch": Scene(["batch", "scans", "-o", "many", "-q", *LESS], folder, "many"),
     }
     for scene in made.values():
         begun = time.monotonic()
@@ -152,20 +153,20 @@ def goes_on(scene: Scene) -> list[str]:
     return faults + [f"{name} differs" for name in damaged(scene)]
 
 
-def killed(scene: Scene, count: int, seed: int, every: int = 5) -> tuple[Counter[str], list[str]]:
-    """Kill a command so many times, into the same output; let it come to its end after every few; count the ends.
+def killed(scene: Scene, kills: range, seed: int) -> tuple[Counter[str], list[str]]:
+    """Kill a command so many times, into the same output, then let it come to its end; return ends and faults.
 
-    The moments are uniform over the time of an undisturbed run. Returns how many kills ended how, by signal and exit
-    code, and the faults, each with the number of its kill.
+    The moments are uniform over the time of an undisturbed run; a kill of the same number and seed is the same signal,
+    at the same share of that time. Ends are counted by signal and exit code; a fault says which kill it was.
     """
-    chance = random.Random(seed)
     ends: Counter[str] = Counter()
     faults: list[str] = []
-    for at in range(count):
+    for at in kills:
+        chance = random.Random(f"{seed} {at}")
         number, after = chance.choice(SIGNALS), chance.uniform(0, scene.seconds)
         code, found = kill(scene, number, after)
         ends[f"{number.name} {code}"] += 1
-        if at % every == every - 1 or at == count - 1:
+        if at == kills[-1]:
             found += goes_on(scene)
             clear(scene)
         faults += [f"kill {at}, {number.name} after {after:.2f} s: {fault}" for fault in found]
