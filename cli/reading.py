@@ -9,7 +9,8 @@ from typer.core import TyperCommand
 from tiskel.cli.settings_file import remark
 from tiskel.wording import meant
 
-NO_CHOICE = re.compile(r"(?:Value error, )?('(.*)' is not one of .*)", re.DOTALL)  #: Typer's words for a wrong choice
+NO_CHOICE = re.compile(r"(?:Value error, )?('(.*)' is not one of (.*))", re.DOTALL)  #: Typer's words for a wrong choice
+QUOTED = re.compile(r"'([^']*)'")
 
 
 class Reading(TyperCommand):
@@ -21,9 +22,8 @@ class Reading(TyperCommand):
             return super().parse_args(ctx, args)
         except typer.BadParameter as error:
             param: Any = error.param
-            choices = getattr(getattr(param, "type_descriptor", None), "choices", None)
-            if choices and (found := NO_CHOICE.fullmatch(error.message)):
-                error.message = f"{found[1].rstrip('.')}.{meant(found[2], map(str, choices))}"
+            if found := NO_CHOICE.fullmatch(error.message):
+                error.message = f"{found[1].rstrip('.')}.{meant(found[2], QUOTED.findall(found[3]))}"
             if param is not None:
                 error.message += remark(ctx, param.name)
             raise

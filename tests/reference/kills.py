@@ -16,7 +16,7 @@ from tiskel.io.streams import BESIDE, STALE
 
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 SHAPES = ("y", "capsule", "cross")  #: one cloud of each; `run` takes the first, `batch` all
-LESS = ("--jobs", "2", "--threads", "1", "--stages", "contract,skeleton,metrics")  #: `run` has all the others
+LESS = ("--jobs", "2", "--threads", "1", "--stages", "contract,skeleton")  #: `run` has all the others
 POINTS = 250  #: of each cloud: a run is mostly start, files and pictures, where kills do most harm
 ENDS = 30.0  #: seconds that workers get to notice that their batch is gone; a loaded machine is slow
 OF_ITSELF = {"timings.json", "report.html", "manifest.jsonl", "summary.csv", "failed.txt"}  #: hold times or dates
@@ -82,8 +82,11 @@ def clear(scene: Scene) -> None:
         scene.out.rmdir()
 
 
-def kill(scene: Scene, number: signal.Signals, after: float) -> tuple[int, list[str]]:
-    """Start a command, send a signal to its first process after so many seconds; return its end and the faults."""
+def kill(scene: Scene, number: signal.Signals, after: float) -> tuple[int | None, list[str]]:
+    """Start a command, send a signal to its first process after so many seconds; return its end and the faults.
+
+    The end is None where the command was done by then.
+    """
     with subprocess.Popen(
         [PROGRAM, *scene.words],
         cwd=scene.folder,
@@ -91,17 +94,19 @@ def kill(scene: Scene, number: signal.Signals, after: float) -> tuple[int, list[
         stderr=subprocess.PIPE,
         start_new_session=True,
     ) as process:
+        sent = False
         try:
             _, said = process.communicate(timeout=after)
         except subprocess.TimeoutExpired:
             process.send_signal(number)
+            sent = True
             _, said = process.communicate()
     faults = [] if process.returncode in ENDINGS[number] else [f"exit code {process.returncode}: {said[-300:]!r}"]
     if number != signal.SIGINT and b"Traceback" in said:  # Ctrl-C may come before there is a program to take it
         faults.append(f"a traceback: {said[-300:]!r}")
     if left := orphans(process.pid):
         faults.append(f"processes live on: {left}")
-    return process.returncode, faults + damaged(scene)
+    return process.returncode if sent else None, faults + damaged(scene)
 
 
 def orphans(session: int) -> list[int]:
@@ -146,28 +151,31 @@ def goes_on(scene: Scene) -> list[str]:
     """Let a command come to its end where a killed one left off, an hour later; return the faults."""
     for path in scene.out.rglob(f"{BESIDE}*"):
         os.utime(path, (time.time() - 2 * STALE,) * 2)
+    begun = time.monotonic()
     done = run(scene)
+    scene.seconds = min(scene.seconds, time.monotonic() - begun)  # a machine that was loaded at first may be no more
     faults = [] if done.returncode == 0 else [f"the next one ends with {done.returncode}: {done.stderr[-300:]!r}"]
     found = written(scene)
     faults += [f"{name} is {'left' if name in found else 'missing'}" for name in found.keys() ^ scene.files.keys()]
     return faults + [f"{name} differs" for name in damaged(scene)]
 
 
-def killed(scene: Scene, kills: range, seed: int) -> tuple[Counter[str], list[str]]:
-    """Kill a command so many times, into the same output, then let it come to its end; return ends and faults.
+def killed(scene: Scene, tries: range, seed: int) -> tuple[Counter[str], list[str]]:
+    """Try to kill a command so many times, into the same output, then let it come to its end; return ends and faults.
 
-    The moments are uniform over the time of an undisturbed run; a kill of the same number and seed is the same signal,
-    at the same share of that time. Ends are counted by signal and exit code; a fault says which kill it was.
+    The moments are uniform over the time of an undisturbed run; a try of the same number and seed is the same signal,
+    at the same share of that time. Ends are counted by signal and exit code, "done" where the command was faster; a
+    fault says which try it was.
     """
     ends: Counter[str] = Counter()
     faults: list[str] = []
-    for at in kills:
+    for at in tries:
         chance = random.Random(f"{seed} {at}")
         number, after = chance.choice(SIGNALS), chance.uniform(0, scene.seconds)
         code, found = kill(scene, number, after)
-        ends[f"{number.name} {code}"] += 1
-        if at == kills[-1]:
+        ends["done" if code is None else f"{number.name} {code}"] += 1
+        if at == tries[-1]:
             found += goes_on(scene)
             clear(scene)
-        faults += [f"kill {at}, {number.name} after {after:.2f} s: {fault}" for fault in found]
+        faults += [f"try {at}, {number.name} after {after:.2f} s: {fault}" for fault in found]
     return ends, faults
