@@ -80,11 +80,34 @@ def reported() -> list[str]:
     return rows
 
 
+def killed(state: Path) -> str:
+    """Return the table of runs that were killed, as benchmarks/kills.py left it."""
+    found = json.loads(state.read_text()) if state.exists() else {}
+    rows = [
+        f"| `tiskel {name}` | {one['kills']} | {', '.join(f'{end} x{n}' for end, n in one['ends'].items())} | "
+        f"{len(one['faults'])} |"
+        for name, one in found.items()
+    ]
+    return "\n".join([KILLED, *rows])
+
+
+KILLED = """## Killed at random moments
+
+SIGKILL, SIGTERM and SIGINT at moments that are uniform over the time of an undisturbed run of small clouds
+(`python benchmarks/kills.py --count 200`). After every kill each file under its own name is whole, no process lives on;
+the next run finds its way, ends with 0, writes the same bytes as an undisturbed one and leaves nothing that was being
+written. Ends are signal and exit code, "done" where the command was faster than the signal.
+
+| command | kills | ends | faults |
+|---|---|---|---|"""
+
+
 def main() -> None:
     """Count, and write or print the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--state", type=Path, default=Path("out/fuzz"))
+    parser.add_argument("--kills", type=Path, default=Path("out/kills.json"), help="what benchmarks/kills.py counted")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     rows = fuzzed(given.state, given.cases)
@@ -94,7 +117,7 @@ def main() -> None:
         "\n\n## Files of reported trouble\n\nEach in a process of its own: a value (exit code 0) or one line (1).\n\n"
     )
     page += "| folder | files | read | refused | faults | MB at most | s at most |\n|---|---|---|---|---|---|---|\n"
-    page += "\n".join(reported()) + "\n\n## The environment\n\n"
+    page += "\n".join(reported()) + f"\n\n{killed(given.kills)}\n\n## The environment\n\n"
     page += (
         "Closed streams, full disks, folders that are gone, limits of memory, odd names, links, endless input, killed\n"
     )

@@ -127,3 +127,12 @@ def test_every_other_file_goes_into_the_wheel() -> None:
         ours = not any(path.is_relative_to(folder) for folder in (*LINKS, recipe))
         if ours and path.is_file() and path.suffix not in {".py", ".pyc"}:
             assert any(path.match(str(pattern)) for pattern in kept), path
+
+
+def test_every_dependency_is_weighed_and_explained() -> None:
+    listed = (ROOT / "pyproject.toml").read_text()
+    needed = listed.split("dependencies = [")[1].split("\n]")[0] + listed.split("full = [")[1].split("]")[0]
+    names = re.findall(r'"([a-z0-9]+)>=', needed)
+    table = (ROOT / "docs" / "install.md").read_text()
+    assert len(names) >= 9
+    assert [name for name in names if not re.search(rf"^\| {name}[ ,|]", table, re.MULTILINE)] == []
