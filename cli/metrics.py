@@ -126,8 +126,10 @@ def metrics(
 ) -> None:
     """Say how good skeletons are: topology, boundedness, inside, medialness, air, centredness and more.
 
-    A table on a terminal, otherwise JSON, one line for each skeleton: `tiskel metrics gls.ply lbc.ply`. Curves of
-    other programs come with their cloud: `tiskel metrics --cloud scan.ply --curve other.swc | jq .inside`
+    A table on a terminal, otherwise JSON, one line for each skeleton: `tiskel metrics gls.ply lbc.ply`. In the table a
+    star is at the best of a row, and the column "good" has what to wish for: shares near 1, distances near 0, loops of
+    the curve as many as those of the solid. Curves of other programs come with their cloud: `tiskel metrics --cloud
+    scan.ply --curve other.swc | jq .inside`
     """
     params = MetricParams(
         bars=bars, diagonal=not no_diagonal, beta=beta, bounded=bounded, threshold=centred, similar=similar,
