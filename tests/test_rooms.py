@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 LINKS = (ROOT / "tiskel" / "cli", ROOT / "tiskel" / "kernels")
 
 # A room, and the rooms that it may import from, besides itself. Anything not named here fails.
-BASE = "errors arrays params timing progress wording extras"
+BASE = "errors arrays params timing progress wording extras shown"
 GEOMETRY = f"{BASE} kernels geometry"
 STAGES = f"{GEOMETRY} methods contraction skeleton"
 ALLOWED = {
@@ -21,10 +21,11 @@ ALLOWED = {
     "extras": "errors",
     "timing": "",
     "wording": "",
+    "shown": "tiskel",  # results show themselves in notebooks
     "progress": "",
     "params": "errors",
     "arrays": "errors params",
-    "geometry": "errors arrays params kernels",
+    "geometry": "errors arrays params kernels shown",
     "preprocess": GEOMETRY,
     "methods": GEOMETRY,
     "contraction": f"{GEOMETRY} methods",
@@ -39,6 +40,7 @@ ALLOWED = {
     "pictures": f"{STAGES} metrics surfaces slicing rolling",
     "messages": f"{STAGES} surfaces slicing rolling metrics",  # the wording of what the stages report
     "pipeline": f"{STAGES} preprocess metrics surfaces slicing rolling io messages",
+    "one_call": f"{STAGES} io pictures",
     "viewer": f"{STAGES} metrics surfaces slicing rolling io pictures pipeline",
     "report": f"{STAGES} version metrics surfaces slicing rolling pictures messages pipeline viewer",
     "batch": f"{BASE} kernels version io metrics",  # many clouds; what is done with each, it is told

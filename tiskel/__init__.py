@@ -1,9 +1,8 @@
 """Curve skeletons of point clouds.
 
-    from tiskel import contract, extract_skeleton, load_cloud
+    from tiskel import skeletonize
 
-    cloud = load_cloud("in.ply")
-    skeleton = extract_skeleton(contract(cloud.points))
+    skeleton = skeletonize("in.ply")
     skeleton.nodes, skeleton.edges, skeleton.radius
 
 Everything public is named here; modules load on first use, so that importing
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from tiskel.io.curves import Curve as Curve
     from tiskel.io.curves import load_curve as load_curve
     from tiskel.io.exports import write_skeleton as write_skeleton
+    from tiskel.io.frames import skeleton_table as skeleton_table
     from tiskel.io.join import join_skeletons as join_skeletons
     from tiskel.io.split import split_cloud as split_cloud
     from tiskel.io.stages.contraction import read_contraction as read_contraction
@@ -38,10 +38,15 @@ if TYPE_CHECKING:
     from tiskel.io.stages.surface import write_surfaces as write_surfaces
     from tiskel.methods.trace import Status as Status
     from tiskel.methods.trace import StepRecord as StepRecord
+    from tiskel.metrics.comparison import Comparison as Comparison
+    from tiskel.metrics.comparison import compare as compare
     from tiskel.metrics.evaluate import evaluate as evaluate
     from tiskel.metrics.result import Quality as Quality
     from tiskel.metrics.stability import Stability as Stability
     from tiskel.metrics.stability import assess_stability as assess_stability
+    from tiskel.one_call import load_skeleton as load_skeleton
+    from tiskel.one_call import plot_skeleton as plot_skeleton
+    from tiskel.one_call import skeletonize as skeletonize
     from tiskel.params import BodyParams as BodyParams
     from tiskel.params import ConditioningParams as ConditioningParams
     from tiskel.params import ContractionParams as ContractionParams
@@ -89,17 +94,18 @@ _HOME = {
     "BodySurface": "surfaces.patches",
     "BodyTrajectory": "rolling.bodies",
     "Cloud": "io.clouds",
+    "Comparison": "metrics.comparison",
     "ConditioningParams": "params",
     "Contraction": "contraction",
     "ContractionParams": "params",
-    "CurveGraph": "geometry.graph",
     "Curve": "io.curves",
+    "CurveGraph": "geometry.graph",
     "CurveWarning": "geometry.doubt",
     "FittedSurface": "slicing.fitted",
     "GlsParams": "params",
     "Inputs": "rolling.inputs",
-    "LbcParams": "params",
     "JoinParams": "params",
+    "LbcParams": "params",
     "LookParams": "params",
     "MetricParams": "params",
     "PipelineParams": "params",
@@ -128,6 +134,7 @@ _HOME = {
     "Trust": "surfaces.patches",
     "View": "viewer.show",
     "assess_stability": "metrics.stability",
+    "compare": "metrics.comparison",
     "condition": "preprocess.conditioning",
     "contract": "contraction",
     "evaluate": "metrics.evaluate",
@@ -138,9 +145,11 @@ _HOME = {
     "join_skeletons": "io.join",
     "load_cloud": "io.clouds",
     "load_curve": "io.curves",
+    "load_skeleton": "one_call",
     "make_shape": "gallery.make",
     "named_shape": "gallery.make",
     "plan_roll": "rolling.plan",
+    "plot_skeleton": "one_call",
     "read_contraction": "io.stages.contraction",
     "read_skeleton": "io.stages.skeleton",
     "read_surfaces": "io.stages.surface",
@@ -149,6 +158,8 @@ _HOME = {
     "roll_on": "rolling.roll_on",
     "run_pipeline": "pipeline",
     "shape_graph": "gallery.make",
+    "skeleton_table": "io.frames",
+    "skeletonize": "one_call",
     "split_cloud": "io.split",
     "view": "viewer.show",
     "write_contraction": "io.stages.contraction",

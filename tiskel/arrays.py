@@ -1,7 +1,8 @@
 """The types of arrays, and checks of arrays at the door of the library."""
 
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,25 @@ Pairs = np.ndarray[tuple[int, int], np.dtype[np.integer[Any]]]  #: shape (l, 2) 
 Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]  #: shape (n,)
 Masks = np.ndarray[tuple[int, int], np.dtype[np.bool_]]  #: shape (n, k)
 
+
+class HasPoints(Protocol):
+    """A cloud of this or of another program: ``points`` are rows of x, y and z, or can become such an array."""
+
+    @property
+    def points(self) -> Any:
+        """(n, 3) coordinates."""
+
+
+class HasVertices(Protocol):
+    """A mesh or a cloud of another program: ``vertices`` are rows of x, y and z, or can become such an array."""
+
+    @property
+    def vertices(self) -> Any:
+        """(n, 3) coordinates."""
+
+
+PointsLike = npt.ArrayLike | HasPoints | HasVertices  #: whatever is taken for points
+
 TINY = np.finfo(float).tiny  # the least normal number: keeps what may be zero from being divided by
 LARGEST = 1e150  #: of a coordinate: the sum of three squares of differences is still a number
 MAD = 1.4826  # of the median absolute deviation: the standard deviation of a normal distribution
@@ -30,13 +50,14 @@ SPREAD = np.uint64(0x9E3779B97F4A7C15)  # 2**64 over the golden ratio, odd: spre
 FLATNESS = 1e-9  # thinner than this share of its length, a cloud is a plane or a line to rounding
 
 
-def as_points(points: npt.ArrayLike) -> Points:
+def as_points(points: PointsLike) -> Points:
     """Return the points as an array that is laid out as the kernels need it.
 
     Parameters
     ----------
-    points : array_like
-        Numbers in the shape (n, 3), in any unit; NaN and infinity pass.
+    points : array_like, or an object with ``points`` or ``vertices``
+        Numbers in the shape (n, 3), in any unit; NaN and infinity pass. Clouds of this library, of Open3D and of
+        trimesh are such objects.
 
     Returns
     -------
@@ -48,8 +69,11 @@ def as_points(points: npt.ArrayLike) -> Points:
     TiskelError
         Where they are no numbers or have another shape.
     """
+    if isinstance(points, (str, Path)):
+        raise TiskelError(f"points cannot be the path {str(points)!r}; read it with load_cloud")
+    held = getattr(points, "points", getattr(points, "vertices", points))
     try:
-        array = np.ascontiguousarray(points, dtype=np.float64)
+        array = np.ascontiguousarray(held, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise TiskelError(f"points must be numbers in an array of shape (n, 3): {error}") from None
     if array.ndim != 2 or array.shape[1] != 3:
@@ -158,7 +182,7 @@ def check_solid(points: Points) -> None:
         raise TiskelError(f"all {len(points)} points lie on {place}; a curve skeleton needs a cloud around a body")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frame:
     """A shift and a scale to normalised coordinates: (points - centre) * scale.
 

@@ -12,8 +12,8 @@ from tiskel.arrays import (
     Indices,
     Mask,
     Points,
+    PointsLike,
     Stack,
-    as_points,
     as_weights,
     check_solid,
     finite_rows,
@@ -21,18 +21,22 @@ from tiskel.arrays import (
     normalisation,
 )
 from tiskel.errors import TiskelError
+from tiskel.geometry.given import given_cloud
 from tiskel.geometry.mesh_surface import MeshSurface
 from tiskel.geometry.rings import Rings
 from tiskel.geometry.scatter import doubts_about
 from tiskel.geometry.strays import stray_points
 from tiskel.methods import METHODS
-from tiskel.methods.trace import Sections, Status, StepRecord, Trace, survivors
-from tiskel.params import ContractionParams, RobustParams
+from tiskel.methods.trace import Sections, Status, StepRecord, Trace, remarks, survivors
+from tiskel.params import ContractionParams
+from tiskel.params.given import Unpack, settled_method
+from tiskel.params.keywords import MethodSettings
 from tiskel.progress import Report, Span
+from tiskel.shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class Contraction:
+@dataclass(frozen=True, eq=False, repr=False)
+class Contraction(Shown):
     """A contracted cloud and where it came from; coordinates in the input's units.
 
     Attributes
@@ -80,6 +84,8 @@ class Contraction:
     >>> len(c.steps), c.status.value, c.points.shape == c.origin.shape
     (2, 'step limit', True)
     """
+
+    _said = ("params.method", "points", "cloud", "steps", "status", "warnings")
 
     points: Points
     origin: Points
@@ -136,8 +142,8 @@ class Contraction:
 
 
 def contract(
-    points: npt.ArrayLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None,
-    surface: MeshSurface | None = None, *, progress: Report | None = None,
+    points: PointsLike, params: ContractionParams | None = None, weights: npt.ArrayLike | None = None,
+    surface: MeshSurface | None = None, *, progress: Report | None = None, **settings: Unpack[MethodSettings],
 ) -> Contraction:  # fmt: skip
     """Contract a cloud towards its medial curve.
 
@@ -148,10 +154,11 @@ def contract(
 
     Parameters
     ----------
-    points : (n, 3), in any unit. Rows that are not finite are dropped and exact
-        duplicates merged; both are counted in the warnings. Stray points
+    points : (n, 3) array, Cloud, or an object of Open3D or trimesh, in any unit; a mesh is sampled. Rows that are
+        not finite are dropped and exact duplicates merged; both are counted in the warnings. Stray points
         (:mod:`tiskel.geometry.strays`) stay in the cloud, but no method sees them.
     params : settings.
+    **settings : the same by name, ``method`` among them; over those of params.
     weights : (n,) positive, for lbc and gls: what W_L is multiplied by at each
         point. Thick parts contract more slowly; one weight for each semantic part
         evens that out (S-LBC, Meyer et al. 2023).
@@ -167,7 +174,7 @@ def contract(
     ------
     TiskelError
         Fewer than ten distinct finite points, all points on a plane or a line,
-        weights that do not fit, or a first step that has no solution.
+        settings or weights that do not fit, or a first step that has no solution.
 
     Examples
     --------
@@ -175,12 +182,13 @@ def contract(
     >>> cloud, true = make_shape(shape_graph("capsule"))
     >>> contract(cloud).params.method
     'robust'
-    >>> len(contract(cloud, GlsParams(max_steps=2)).points) < len(cloud)
+    >>> len(contract(cloud, GlsParams(), max_steps=2).points) < len(cloud)
     True
     """
-    params, span = params or RobustParams(), Span(progress, "contract")
+    params, span = settled_method(params, settings), Span(progress, "contract")
     span.at(0, "cloud")
-    every = as_points(points)
+    every, known_mesh = given_cloud(points)
+    surface = known_mesh if surface is None else surface
     finite = finite_rows(every)
     cloud, input_rows = np.ascontiguousarray(every[finite]), np.flatnonzero(finite).astype(np.int32)
     if len(cloud) == 0:
@@ -197,22 +205,13 @@ def contract(
     trace = METHODS[params.method].contract(body, placed, chosen, scaled, span)
     if not trace.steps:
         raise TiskelError(f"contraction failed in its first step: {trace.status.advice}; try --voxel or --outliers")
-    warnings = _warnings(len(every) - len(cloud), int((~stray).sum()) - len(distinct), trace.status)
+    warnings = remarks(len(every) - len(cloud), int((~stray).sum()) - len(distinct), trace.status)
     warnings += doubts_about(body)
     if stray.any():
         first[stray] = distinct[cKDTree(cloud[distinct]).query(cloud[stray])[1]]
     trace = replace(trace, surface=known if trace.sections is not None else None)
-    made = _assembled(trace, frame, cloud, input_rows, first, distinct, warnings, params)
     span.at(1)
-    return made
-
-
-def _warnings(dropped: int, duplicates: int, status: Status) -> tuple[str, ...]:
-    counted = [(dropped, "rows with NaN or Inf were dropped"), (duplicates, "exact duplicates were merged")]
-    found = [f"{count} {what}" for count, what in counted if count]
-    if status not in (Status.CONVERGED, Status.COMPLETE):
-        found.append(f"stopped early: {status.advice}")
-    return tuple(found)
+    return _assembled(trace, frame, cloud, input_rows, first, distinct, warnings, params)
 
 
 def _assembled(

@@ -7,19 +7,22 @@ from typing import Any, TypeVar
 import numpy.typing as npt
 
 from tiskel import messages
-from tiskel.arrays import Points, as_points
+from tiskel.arrays import Points, PointsLike
 from tiskel.contraction import Contraction, contract
 from tiskel.errors import TiskelError
+from tiskel.geometry.given import given_cloud
 from tiskel.geometry.mesh_surface import MeshSurface, still_on
 from tiskel.messages import Message, Messages
 from tiskel.metrics.evaluate import evaluate
 from tiskel.metrics.result import Quality
 from tiskel.metrics.stability import Stability, assess_stability
 from tiskel.params import PipelineParams
+from tiskel.params.given import settled
 from tiskel.preprocess.conditioning import condition
 from tiskel.progress import Report
 from tiskel.rolling.over import roll_over
 from tiskel.rolling.trajectory import Trajectory
+from tiskel.shown import Shown
 from tiskel.skeleton import Skeleton, extract_skeleton
 from tiskel.slicing.body import fit_whole
 from tiskel.slicing.fitted import FittedSurface, Surfaces
@@ -52,8 +55,8 @@ class Finished:
 Observer = Callable[[Finished], None]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class PipelineResult:
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class PipelineResult(Shown):
     """What all stages made of one cloud; coordinates in the input's units.
 
     Attributes
@@ -62,8 +65,7 @@ class PipelineResult:
         The cloud as it was contracted: what conditioning left of the input.
     contraction : Contraction
     skeleton : Skeleton
-    quality : Quality or None
-    stability : Stability or None
+    quality, stability
         None where the settings leave the stage out; surfaces and trajectories likewise.
     surfaces : Surfaces or None
         With that of the whole body; None where it could not be fitted, and then there are no trajectories.
@@ -76,7 +78,6 @@ class PipelineResult:
     messages : tuple of Message
         What there is to say, warnings included, in the order of the parts.
     params : PipelineParams
-        The settings.
 
     Examples
     --------
@@ -85,6 +86,8 @@ class PipelineResult:
     >>> result.skeleton.ends, result.surface.name, result.reason
     (2, '0', '')
     """
+
+    _said = ("points", "skeleton", "surfaces", "trajectories", "reason")
 
     points: Points
     contraction: Contraction
@@ -135,7 +138,7 @@ class _Record:
 
 
 def run_pipeline(
-    points: npt.ArrayLike,
+    points: PointsLike,
     params: PipelineParams | None = None,
     weights: npt.ArrayLike | None = None,
     observer: Observer = lambda finished: None,
@@ -149,16 +152,14 @@ def run_pipeline(
 
     Parameters
     ----------
-    points : (n, 3) array
-        The cloud, in any unit.
+    points : (n, 3) array, Cloud, or object of Open3D or trimesh
+        The cloud, in any unit; a mesh is sampled.
     params : PipelineParams, optional
         The settings of all stages.
-    weights : (n,) array, optional
-        See :func:`tiskel.contract`; not with conditioning that changes the number of points.
+    weights, surface
+        See :func:`tiskel.contract`; not, or left out, where conditioning changes the points.
     observer : callable, optional
         Called after each part with a :class:`tiskel.pipeline.Finished`. What it raises ends the run.
-    surface : MeshSurface, optional
-        See :func:`tiskel.contract`; left out where conditioning changes the points.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts of the stages begin; every stage goes from 0 to 1.
 
@@ -184,13 +185,13 @@ def run_pipeline(
     >>> len(result.contraction.steps), len(result.trajectories), result.reason
     (3, 1, '')
     """
-    chosen, record = params or PipelineParams(), _Record(observer)
-    ready, _ = record.do(
-        "condition", lambda: condition(as_points(points), chosen.conditioning), lambda r: messages.said(r[1])
-    )
+    chosen, record = settled(PipelineParams, params, {}), _Record(observer)
+    given, known = given_cloud(points)
+    mesh = known if surface is None else surface
+    ready, _ = record.do("condition", lambda: condition(given, chosen.conditioning), lambda r: messages.said(r[1]))
     c = record.do(
         "contract",
-        lambda: contract(ready, chosen.contraction, weights, still_on(surface, ready, points), progress=progress),
+        lambda: contract(ready, chosen.contraction, weights, still_on(mesh, ready, given), progress=progress),
         messages.of_contraction,
     )
     s = record.do("skeleton", lambda: extract_skeleton(c, chosen.skeleton, progress=progress), messages.of_skeleton)

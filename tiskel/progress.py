@@ -11,7 +11,7 @@ class Progress:
     Attributes
     ----------
     stage : str
-        Its name: contract, skeleton, metrics, stability, slice or roll.
+        Its name: contract, skeleton, metrics, stability, slice, body, roll, plan, split or join.
     part : str
         What begins now; empty where the stage is done.
     share : float

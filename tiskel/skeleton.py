@@ -1,14 +1,9 @@
 """The stage ``skeleton``: a contracted cloud in, a curve skeleton out."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-
-if TYPE_CHECKING:
-    import networkx
-
-    from tiskel import View
 
 from tiskel.arrays import Indices, Numbers, Points
 from tiskel.contraction import Contraction
@@ -21,11 +16,23 @@ from tiskel.geometry.labels import labels
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 from tiskel.methods import METHODS
-from tiskel.params import ContractionParams, SkeletonParams
+from tiskel.params import ContractionParams, SkeletonParams, Up
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import SkeletonSettings
 from tiskel.progress import Report, Span
 
+if TYPE_CHECKING:
+    from pathlib import Path
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+    import networkx
+    import pandas
+
+    from tiskel import View
+
+Rows = Literal["nodes", "edges", "branches"]  #: what a table may have a row for each of
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Skeleton(CurveGraph):
     """A curve skeleton and the cloud it stands for; coordinates in the input's units.
 
@@ -60,6 +67,8 @@ class Skeleton(CurveGraph):
     >>> true.components, true.loops, true.ends, len(true.branches)
     (1, 0, 3, 3)
     """
+
+    _said = ("nodes", "components", "loops", "ends", "junctions", "length", "cloud", "warnings")
 
     node_of_point: Indices
     cloud: Points
@@ -96,7 +105,32 @@ class Skeleton(CurveGraph):
         """
         return branch_table(self, getattr(self.params, "root", None))
 
-    def view(self, *more: Any, up: str = "auto", unit: str = "") -> "View":
+    def save(self, target: "str | Path") -> None:
+        """Write it in the format that the suffix names, see :func:`tiskel.write_skeleton`; PLY holds all of it."""
+        from tiskel import write_skeleton
+
+        write_skeleton(target, self)
+
+    @staticmethod
+    def load(source: "str | Path") -> "Skeleton":
+        """Read a skeleton of any format, see :func:`tiskel.load_skeleton`."""
+        from tiskel import load_skeleton
+
+        return load_skeleton(source)
+
+    def plot(self, target: "str | Path | None" = None, *, title: str = "", up: Up = "auto", unit: str = "") -> Any:
+        """Draw it from three sides and in space, into a file where one is named; see :func:`tiskel.plot_skeleton`."""
+        from tiskel import plot_skeleton
+
+        return plot_skeleton(self, target, title=title, up=up, unit=unit)
+
+    def to_pandas(self, what: Rows = "nodes") -> "pandas.DataFrame":
+        """Return a table of nodes, edges or branches, a row each; see :func:`tiskel.skeleton_table`."""
+        from tiskel import skeleton_table
+
+        return skeleton_table(self, what)
+
+    def view(self, *more: Any, up: Up = "auto", unit: str = "") -> "View":
         """Return it as something to look at, with other things: ``.save("look.html")``; see :func:`tiskel.view`."""
         from tiskel import view
 
@@ -124,8 +158,9 @@ class Skeleton(CurveGraph):
 
 
 def extract_skeleton(
-    contraction: Contraction, params: SkeletonParams | None = None, *, progress: Report | None = None
-) -> Skeleton:
+    contraction: Contraction, params: SkeletonParams | None = None, *, progress: Report | None = None,
+    **settings: Unpack[SkeletonSettings],
+) -> Skeleton:  # fmt: skip
     """Turn a contracted cloud into a curve skeleton, by the method that contracted it.
 
     Method robust fits a curve of round cones to the original cloud along the
@@ -142,6 +177,8 @@ def extract_skeleton(
         What is to differ from the settings that the contraction was made with.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the extraction.
+    **settings
+        Those of :class:`tiskel.SkeletonParams` by name; over those of params.
 
     Returns
     -------
@@ -164,9 +201,9 @@ def extract_skeleton(
     span.at(0, "cloud")
     if len(c.points) == 0:
         raise TiskelError("the contraction holds no point; run tiskel contract again")
-    settings = (params or SkeletonParams()).over(c.params)
+    chosen = settled(SkeletonParams, params, settings).over(c.params)
     trace, frame = c.as_trace()
-    made = METHODS[settings.method].curve(trace, settings.placed(frame.place), span)
+    made = METHODS[chosen.method].curve(trace, chosen.placed(frame.place), span)
     doubts = [doubt.moved(frame.undo) for doubt in made.warnings]
     body = np.flatnonzero(~c.strays)
     node_of_point = np.full(len(c.cloud), -1, np.int32)
@@ -189,5 +226,5 @@ def extract_skeleton(
         rows=c.rows,
         warnings=tuple(doubt for doubt in doubts if doubt.severity == "warning"),
         notes=tuple(doubt for doubt in doubts if doubt.severity == "note"),
-        params=settings,
+        params=chosen,
     )

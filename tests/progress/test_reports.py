@@ -23,6 +23,7 @@ from tiskel import (
     fit_surface,
     make_shape,
     roll,
+    roll_body,
     run_pipeline,
     shape_graph,
 )
@@ -30,6 +31,7 @@ from tiskel.arrays import Points
 from tiskel.io.stages.contraction import dump_contraction
 from tiskel.io.stages.skeleton import dump_skeleton
 from tiskel.progress import Report, Span
+from tiskel.surfaces.analytic import Ellipsoid, Torus
 
 
 @pytest.fixture(scope="module")
@@ -111,9 +113,18 @@ def test_a_pipeline_tells_every_stage_from_0_to_1(tree: Points) -> None:
     run_pipeline(tree, PipelineParams(), progress=told.append)
     runs = [[one.share for one in told if one.stage == stage] for stage in dict.fromkeys(one.stage for one in told)]
     assert list(dict.fromkeys(one.stage for one in told)) == [
-        "contract", "skeleton", "metrics", "stability", "slice", "roll",
+        "contract", "skeleton", "metrics", "stability", "slice", "body", "roll",
     ]  # fmt: skip
     assert all((shares[0], shares[-1]) == (0.0, 1.0) for shares in runs)
+
+
+def test_two_bodies_tell_how_far_they_are() -> None:
+    params = RollParams(omega=(0.5, 0.3, 0), start=(0.3, 1.0, 0.1, 0.1, 0.4), duration=1, rate=10)
+    over, rolling = Torus(5.0, 2.0), Ellipsoid(0.3, 0.4, 0.25)
+    runs = [roll_body(over, rolling, params)]
+    told = told_by(lambda report: runs.append(roll_body(over, rolling, params, progress=report)))
+    assert np.array_equal(runs[0].state, runs[1].state)
+    assert 3 < len(told) <= 103
 
 
 def test_what_the_callback_raises_ends_the_stage(tree: Points) -> None:

@@ -138,7 +138,7 @@ def test_what_cannot_be_shown_is_refused() -> None:
     with pytest.raises(TiskelError, match=r"cannot be written as '\.gif'"):
         view(np.eye(3)).dump(".gif")
     with pytest.raises(TiskelError, match="up must be one of"):
-        view(np.eye(3), up="w")
+        view(np.eye(3), up="w")  # type: ignore[arg-type]
 
 
 def test_the_script_is_made_of_its_sources() -> None:

@@ -61,7 +61,7 @@ class Part:
         return found
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Body(CurveGraph):
     """A union of parts, and the graph that is its curve skeleton.
 

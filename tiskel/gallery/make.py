@@ -13,6 +13,8 @@ from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.round_cones import ConeGraph, sample_union
 from tiskel.params import ShapeParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import ShapeSettings
 from tiskel.skeleton import Skeleton
 from tiskel.wording import meant
 
@@ -83,7 +85,9 @@ def named_shape(name: str) -> Shape:
     return every[name]()
 
 
-def make_shape(shape: Shape, params: ShapeParams | None = None) -> tuple[Points, Skeleton]:
+def make_shape(
+    shape: Shape | str, params: ShapeParams | int | None = None, **settings: Unpack[ShapeSettings]
+) -> tuple[Points, Skeleton]:
     """Return a cloud of a shape and its true skeleton.
 
     The surface is sampled uniformly by area, thinned towards one end of its
@@ -92,11 +96,12 @@ def make_shape(shape: Shape, params: ShapeParams | None = None) -> tuple[Points,
 
     Parameters
     ----------
-    shape : ConeGraph or Body
-        A union of round cones, such as :func:`tiskel.shape_graph` returns, or any that
-        :func:`tiskel.named_shape` does.
-    params : ShapeParams, optional
-        The settings.
+    shape : str, ConeGraph or Body
+        The name of a shape, as :func:`tiskel.named_shape` knows it; or what it and :func:`tiskel.shape_graph` return.
+    params : ShapeParams or int, optional
+        The settings; a number is ``count``, of points.
+    **settings
+        Those of :class:`tiskel.ShapeParams` by name; over those of params.
 
     Returns
     -------
@@ -108,22 +113,26 @@ def make_shape(shape: Shape, params: ShapeParams | None = None) -> tuple[Points,
     Raises
     ------
     TiskelError
-        Where a sensor is so near that it sees too little.
+        For an unknown name, and where a sensor is so near that it sees too little.
 
     Examples
     --------
-    >>> from tiskel import ShapeParams, make_shape, shape_graph
-    >>> cloud, true = make_shape(shape_graph("hand"), ShapeParams(count=2000, missing=0.1))
+    >>> from tiskel import make_shape
+    >>> cloud, true = make_shape("hand", 2000, missing=0.1)
     >>> cloud.shape, true.ends
     ((2000, 3), 6)
     """
-    params = params or ShapeParams()
-    generator = np.random.default_rng(params.seed)
+    if isinstance(params, (int, np.integer)):
+        chosen = settled(ShapeParams, None, {"count": int(params), **settings})
+    else:
+        chosen = settled(ShapeParams, params, settings)
+    shape = named_shape(shape) if isinstance(shape, str) else shape
+    generator = np.random.default_rng(chosen.seed)
     unit = least_thickness(shape)
-    before_cut = int(np.ceil(params.count / (1 - params.missing)))
-    points = _scanned(shape, before_cut, params, generator)
-    points = _cut(points, len(points) - params.count, generator)
-    points = points + generator.normal(size=points.shape) * params.noise * unit
+    before_cut = int(np.ceil(chosen.count / (1 - chosen.missing)))
+    points = _scanned(shape, before_cut, chosen, generator)
+    points = _cut(points, len(points) - chosen.count, generator)
+    points = points + generator.normal(size=points.shape) * chosen.noise * unit
     return points, analytic_skeleton(shape, points)
 
 

@@ -32,7 +32,7 @@ def point_spacings(cloud: Points) -> Numbers:
     return spacings_from(np.reshape(distances, (len(cloud), -1)) ** 2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Air:
     """Which of q places on a curve are in the air.
 

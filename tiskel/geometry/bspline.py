@@ -22,7 +22,7 @@ WEIGHTS = 10.0 ** np.arange(-9, 5)  # of the penalty, tried by cross-validation
 DERIVATIVES = 4  # the value and three of them
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BSplineCurve:
     """A spline on even intervals.
 

@@ -95,7 +95,7 @@ class ConeBody:
         return cKDTree(np.concatenate([visible(shape, e, int(n), around[e], generator) for e, n in enumerate(counts)]))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CloudBody:
     """The solid within an oriented surface: inside by winding number, distances to the nearest point.
 

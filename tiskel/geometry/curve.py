@@ -9,7 +9,7 @@ from tiskel.geometry.frames import unit
 from tiskel.geometry.graph import CurveGraph
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CurveSamples:
     """Places along a curve.
 

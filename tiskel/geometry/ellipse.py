@@ -10,7 +10,7 @@ LEAST = 5  # points that determine a conic
 FLAT = 1e-8  # relative: a scatter matrix worse conditioned says nothing
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ellipse:
     """An ellipse in a plane.
 

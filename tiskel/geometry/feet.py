@@ -13,7 +13,7 @@ CANDIDATES = 8  # nearest parts whose edges are tried; a curve forks into fewer 
 BATCH = 100_000  # queries at a time: bounds the memory, not the result
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Parts:
     """A curve cut into parts along its edges.
 
@@ -109,7 +109,7 @@ def _at(values: Points, curve: CurveGraph, edges: Indices, shares: Numbers) -> P
     return np.asarray(values[first] + shares[:, None] * (values[last] - values[first]))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Feet:
     """The places of a curve that are nearest to queries.
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +13,11 @@ from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Pairs, Points
 from tiskel.geometry.branches import branches_of
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
+from tiskel.shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class CurveGraph:
+@dataclass(frozen=True, eq=False, repr=False)
+class CurveGraph(Shown):
     """A graph in space; coordinates and radii in one unit.
 
     Attributes
@@ -43,6 +45,8 @@ class CurveGraph:
     >>> round(y.length, 6)
     3.0
     """
+
+    _said: ClassVar[tuple[str, ...]] = ("nodes", "components", "loops", "ends", "junctions", "length")
 
     nodes: Points
     edges: Edges

@@ -55,7 +55,7 @@ def _tree(points: Points) -> tuple[Points, Indices, int, Points, Points]:
     return ordered, rows, depth, low, high
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MortonCurve:
     """A cloud along the Morton curve, where neighbours in the order are mostly neighbours in space.
 

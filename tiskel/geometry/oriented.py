@@ -27,7 +27,7 @@ TRUSTED = 0.75  # least share of points that must lie between an inside and an o
 PROBES = 500  # points that this is tried on
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class OrientedCloud:
     """Oriented points.
 

@@ -8,7 +8,7 @@ from scipy import sparse
 from tiskel.arrays import Indices, Lists, Masks, Numbers, Points
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rings:
     """The ring of every point: its neighbours in order around it.
 

@@ -18,7 +18,7 @@ from tiskel.geometry.graph import CurveGraph
 BATCH = 200_000  # candidates per round: bounds the memory, not the result
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ConeGraph(CurveGraph):
     """A union of round cones: every edge is one.
 

@@ -18,10 +18,11 @@ from tiskel.io.formats import format_of, text, writer_of
 from tiskel.io.formats.base import Parsed
 from tiskel.io.limits import unpacked
 from tiskel.io.streams import STANDARD, read_bytes
+from tiskel.shown import Shown
 
 
-@dataclass(frozen=True)
-class Cloud:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cloud(Shown):
     r"""A point cloud as it was read.
 
     Attributes
@@ -54,6 +55,8 @@ class Cloud:
     >>> cloud.name, cloud.points.shape, cloud.properties["intensity"].tolist()
     ('c.csv', (2, 3), [7.0, 8.0])
     """
+
+    _said = ("name", "points", "properties", "warnings")
 
     points: Points
     properties: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)

@@ -36,7 +36,7 @@ NODES_FILE = re.compile(r"nodes|vertices|points", re.IGNORECASE)
 OBJ_LINE = re.compile(rb"^l[ \t]", re.MULTILINE)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Curve(CurveGraph):
     """A curve as it was read, in the file's units; see :class:`tiskel.CurveGraph`.
 
@@ -61,6 +61,8 @@ class Curve(CurveGraph):
     >>> curve.name, curve.ends, round(curve.length, 3)
     ('bow.obj', 2, 2.828)
     """
+
+    _said = ("name", "nodes", "components", "loops", "ends", "junctions", "length")
 
     name: str = field(default="", kw_only=True)
 

@@ -16,6 +16,8 @@ from tiskel.io.streams import mapped
 from tiskel.io.tile_index import CLOUDS, SKELETONS, Part, TileIndex, read_index
 from tiskel.io.tile_writer import read_rows
 from tiskel.params import JoinParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import JoinSettings
 from tiskel.progress import Report, Span
 from tiskel.skeleton import Skeleton
 from tiskel.tiles.cells import Integers
@@ -44,6 +46,7 @@ def join_skeletons(
     skeletons: str | Path | None = None,
     *,
     progress: Report | None = None,
+    **settings: Unpack[JoinSettings],
 ) -> tuple[Skeleton, TileIndex]:
     """Return the skeleton of a cloud from those of its tiles or objects.
 
@@ -64,6 +67,8 @@ def join_skeletons(
         ``tiskel run`` write it), NAME.skeleton.ply or NAME.ply, for the NAME of each part.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the work.
+    **settings
+        Those of :class:`tiskel.JoinParams` by name; over those of params.
 
     Returns
     -------
@@ -86,7 +91,7 @@ def join_skeletons(
     ...     print(error)
     nowhere has no index.json; make it with: tiskel split IN -o nowhere
     """
-    params, span = params or JoinParams(), Span(progress, "join")
+    params, span = settled(JoinParams, params, settings), Span(progress, "join")
     span.at(0, "reading")
     index = read_index(folder)
     files, missing = _files(index, Path(skeletons) if skeletons else Path(folder) / SKELETONS)

@@ -15,7 +15,7 @@ from tiskel.io.stages.which import stage_of
 from tiskel.io.streams import read_bytes
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Measurable:
     """What :func:`tiskel.evaluate` measures, all in one unit; None where there is none.
 

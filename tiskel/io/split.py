@@ -13,6 +13,8 @@ from tiskel.io.streams import write_bytes
 from tiskel.io.tile_index import CLOUDS, INDEX, Part, TileIndex, read_index
 from tiskel.io.tile_writer import CloudFiles, document
 from tiskel.params import SplitParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import SplitSettings
 from tiskel.progress import Report, Span
 from tiskel.tiles.cells import MOST, CellGrid, Counting
 from tiskel.tiles.margin import overlap_of
@@ -27,8 +29,9 @@ Dealt = Iterator[tuple[str, Points, npt.NDArray[np.int64], Mask]]
 
 
 def split_cloud(
-    source: str | Path, folder: str | Path, params: SplitParams | None = None, *, progress: Report | None = None
-) -> tuple[TileIndex, tuple[str, ...]]:
+    source: str | Path, folder: str | Path, params: SplitParams | None = None, *, progress: Report | None = None,
+    **settings: Unpack[SplitSettings],
+) -> tuple[TileIndex, tuple[str, ...]]:  # fmt: skip
     """Cut a cloud into tiles or objects, each a file, with an index.
 
     Files are FOLDER/clouds/NAME.ply, binary PLY with two properties besides x, y
@@ -47,6 +50,8 @@ def split_cloud(
         The settings.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the work.
+    **settings
+        Those of :class:`tiskel.SplitParams` by name; over those of params.
 
     Returns
     -------
@@ -73,7 +78,12 @@ def split_cloud(
     >>> len(index.parts), sum(part.core for part in index.parts)
     (2, 1000)
     """
-    params, span, path, target = params or SplitParams(), Span(progress, "split"), Path(source), Path(folder)
+    params, span, path, target = (
+        settled(SplitParams, params, settings),
+        Span(progress, "split"),
+        Path(source),
+        Path(folder),
+    )
     span.at(0, "counting")
     pieces = pieces_of(path)
     objects = params.parts == "objects"

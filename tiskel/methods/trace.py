@@ -44,6 +44,15 @@ _ADVICE = {
 }
 
 
+def remarks(dropped: int, duplicates: int, status: Status) -> tuple[str, ...]:
+    """Return what to know of a contraction: points that were left out, and that it stopped early."""
+    counted = [(dropped, "rows with NaN or Inf were dropped"), (duplicates, "exact duplicates were merged")]
+    found = [f"{count} {what}" for count, what in counted if count]
+    if status not in (Status.CONVERGED, Status.COMPLETE):
+        found.append(f"stopped early: {status.advice}")
+    return tuple(found)
+
+
 @dataclass(frozen=True)
 class StepRecord:
     """One accepted step.

@@ -20,7 +20,7 @@ from tiskel.geometry.spanning import spanning_tree
 NO_CYCLES: Table = np.zeros((0, 2))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Barcode:
     """Persistent homology of a set of points, in their unit.
 

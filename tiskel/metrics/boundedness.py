@@ -31,7 +31,7 @@ COVERED, OUTSIDE, HULL, MAP = 0, 1, 2, 3  #: what settled a place
 BLOCK = 8192  # places at a time, so that what each of them sees fits into memory
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Boundedness:
     """How places are surrounded.
 
@@ -126,7 +126,7 @@ def _disc_radii(places: Points, counts: npt.NDArray[np.intp]) -> Numbers:
     return np.asarray(np.take_along_axis(distances, which, axis=1).mean(axis=1))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Coverage:
     """The directions in which places see a cloud.
 

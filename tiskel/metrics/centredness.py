@@ -63,7 +63,7 @@ def point_centredness(points: Points, originals: Points) -> Numbers:
     return np.asarray(np.maximum(0, 1 - ratio))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sections:
     """What the sections across a curve say, one row per sample of the curve.
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Mask, Numbers, Points
+from tiskel.arrays import Mask, Numbers, Points, PointsLike
 from tiskel.errors import TiskelError
 from tiskel.extras import there
 from tiskel.geometry.air import in_the_air
@@ -23,25 +23,27 @@ from tiskel.metrics.loops import Loops, count_loops
 from tiskel.metrics.medialness import medialness_at
 from tiskel.metrics.places import CurveQuality, PointQuality
 from tiskel.metrics.result import Quality
-from tiskel.metrics.subject import Subject, make_subject
+from tiskel.metrics.subject import Subject, arrays_of, make_subject
 from tiskel.metrics.topology import Topology, compare_topology
 from tiskel.params import MetricParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import MetricSettings
 from tiskel.progress import Report, Span
-from tiskel.skeleton import Skeleton
 from tiskel.timing import Stopwatch
 
 PARTS = 11  # that a skeleton with points and a curve is measured in; for who waits only
 
 
 def evaluate(
-    cloud: npt.ArrayLike | Skeleton,
-    points: npt.ArrayLike | None = None,
+    cloud: PointsLike | CurveGraph,
+    points: PointsLike | CurveGraph | None = None,
     nodes: npt.ArrayLike | None = None,
     edges: npt.ArrayLike | None = None,
     *,
     origin: npt.ArrayLike | None = None,
     params: MetricParams | None = None,
     progress: Report | None = None,
+    **settings: Unpack[MetricSettings],
 ) -> Quality:
     """Measure skeletal points and a curve against the cloud they stand for.
 
@@ -54,11 +56,12 @@ def evaluate(
 
     Parameters
     ----------
-    cloud : (n, 3) array_like, or Skeleton
+    cloud : (n, 3) array_like, Cloud, object of Open3D or trimesh, or Skeleton
         In any unit; rows that are not finite are dropped, duplicates counted once. A skeleton brings its cloud,
         contracted points and curve along.
-    points : (m, 3) array_like, optional
-        Skeletal (contracted) points, in the unit of the cloud.
+    points : (m, 3) array_like, or CurveGraph, optional
+        Skeletal (contracted) points, in the unit of the cloud; or a curve or skeleton in the place of points, nodes
+        and edges.
     nodes : (v, 3) array_like, optional
         Nodes of the curve skeleton, in the unit of the cloud.
     edges : (e, 2) array_like of int, optional
@@ -70,6 +73,8 @@ def evaluate(
         The settings.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the measuring.
+    **settings
+        Those of :class:`tiskel.MetricParams` by name; over those of params.
 
     Returns
     -------
@@ -92,15 +97,8 @@ def evaluate(
     >>> round(quality.as_dict()["inside"]["curve"], 2)
     1.0
     """
-    params = params or MetricParams()
-    if isinstance(cloud, Skeleton):
-        if points is not None or nodes is not None or edges is not None or origin is not None:
-            raise TiskelError("a skeleton brings points, nodes, edges and origin along; leave them out, or give arrays")
-        s = cloud
-        some = len(s.contracted) > 0
-        cloud, points, origin = s.cloud, s.contracted if some else None, s.origin if some else None
-        nodes, edges = s.nodes, s.edges
-    subject = make_subject(cloud, points, nodes, edges, origin, params.normalise)
+    params = settled(MetricParams, params, settings)
+    subject = make_subject(*arrays_of(cloud, points, nodes, edges, origin), params.normalise)
     watch = Stopwatch(began=(span := Span(progress, "metrics")).parts(PARTS))
     with watch.measure("inside"):
         surface = oriented_cloud(subject.cloud, subject.targets, params.seed)

@@ -23,7 +23,7 @@ from tiskel.metrics.subject import Subject
 from tiskel.params import MetricParams
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Loops:
     """Numbers of loops; None where they cannot be told, with the reason.
 

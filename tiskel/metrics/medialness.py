@@ -26,7 +26,7 @@ TURN = np.pi * (3 - np.sqrt(5))  # the golden angle: turned by it, directions ne
 MOST_STEPS = 100  # a climb that still goes on has come out of a very large body
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Medialness:
     """How medial a curve is in a body.
 

@@ -11,7 +11,7 @@ from tiskel.metrics.centredness import Sections
 from tiskel.metrics.shares import share
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PointQuality:
     """Measures of skeletal points, one row each; coordinates in the input's units.
 
@@ -42,7 +42,7 @@ class PointQuality:
     smoothness: Numbers
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CurveQuality:
     """Measures of a curve at samples and at its vertices; coordinates in the input's units.
 

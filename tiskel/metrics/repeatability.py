@@ -88,11 +88,44 @@ def repeatability(a: CurveGraph, b: CurveGraph) -> Repeatability:
     >>> alike.same_graph, alike.tips_share, round(alike.radii_95, 6)
     (True, 1.0, 0.0)
     """
-    side = diagonal(np.concatenate([a.nodes, b.nodes])) if len(a.nodes) + len(b.nodes) else 0.0
+    return alike(a, b, ways_between(a, b))
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """How far the parts of one curve are from another.
+
+    Attributes
+    ----------
+    in_radii : (p,) float64
+        In local radii, the mean of both curves' there; NaN where none is known.
+    distances : (p,) float64
+        In their unit.
+    lengths : (p,) float64
+        Of the parts.
+    """
+
+    in_radii: Numbers
+    distances: Numbers
+    lengths: Numbers
+
+
+def ways_between(a: CurveGraph, b: CurveGraph) -> tuple[Way, ...]:
+    """Return the way from the first to the second and that back; none where one of them has no length."""
+    step = PARTS * _side(a, b)
+    return tuple(_way(*pair, step) for pair in ((a, b), (b, a))) if a.length > 0 and b.length > 0 else ()
+
+
+def _side(a: CurveGraph, b: CurveGraph) -> float:
+    return diagonal(np.concatenate([a.nodes, b.nodes])) if len(a.nodes) + len(b.nodes) else 0.0
+
+
+def alike(a: CurveGraph, b: CurveGraph, ways: tuple[Way, ...]) -> Repeatability:
+    """Return how alike two curves are that are so far apart."""
+    side = _side(a, b)
     tips, most = _tips(a, b, NEAR * side), max(a.ends, b.ends)
-    ways = [_way(*pair, PARTS * side) for pair in ((a, b), (b, a))] if a.length > 0 and b.length > 0 else []
-    in_radii = [tail for ratio, _, lengths in ways if (tail := _tail(ratio, lengths)) is not None]
-    in_units = [tail for _, apart, lengths in ways if (tail := _tail(apart, lengths)) is not None]
+    in_radii = [far for way in ways if (far := tail(way.in_radii, way.lengths)) is not None]
+    in_units = [far for way in ways if (far := tail(way.distances, way.lengths)) is not None]
     return Repeatability(
         components=b.components - a.components,
         loops=b.loops - a.loops,
@@ -115,22 +148,21 @@ def _tips(a: CurveGraph, b: CurveGraph, tolerance: float) -> int:
     return int((maximum_bipartite_matching(sparse.csr_array(near), perm_type="column") >= 0).sum())
 
 
-def _way(a: CurveGraph, b: CurveGraph, step: float) -> tuple[Numbers, Numbers, Numbers]:
-    """Return how far the parts of one curve are from another, in mean local radii and in units, and their lengths."""
+def _way(a: CurveGraph, b: CurveGraph, step: float) -> Way:
     parts = parts_of(a, step)
     feet = feet_on(b, parts.points, step)
     radii = between(a.radii, a, parts.edges, parts.shares), between(b.radii, b, feet.edges, feet.shares)
     mean = (radii[0] + radii[1]) / 2
     ratio = np.divide(feet.distances, mean, out=np.full(len(mean), np.nan), where=mean > 0)
-    return ratio, feet.distances, parts.lengths
+    return Way(ratio, feet.distances, parts.lengths)
 
 
-def _tail(values: Numbers, lengths: Numbers) -> float | None:
-    """Return what 95 % of the length that has a value is within; None where none has."""
+def tail(values: Numbers, lengths: Numbers, share: float = TAIL) -> float | None:
+    """Return what a share of the length that has a value is within; None where none has."""
     known = ~np.isnan(values)
     if not known.any():
         return None
     values, lengths = values[known], lengths[known]
     order = np.argsort(values, kind="stable")
     reached = np.cumsum(lengths[order])
-    return float(values[order][np.searchsorted(reached, TAIL * reached[-1])])
+    return float(values[order][np.searchsorted(reached, share * reached[-1])])

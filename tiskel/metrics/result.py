@@ -15,10 +15,11 @@ Document = dict[str, Any]
 
 NO_POINTS = "no skeletal points were given"
 NO_CURVE = "no curve with edges was given"
+SAID = ("boundedness", "inside", "medialness", "air", "centredness", "smoothness", "loops")  # in one line
 NO_LENGTH = "all of it is at one place"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Quality:
     """How good a skeleton is; :meth:`as_dict` gives the overall values, None with a reason where there is none.
 
@@ -72,6 +73,19 @@ class Quality:
     params: MetricParams
     warnings: tuple[str, ...] = ()
     seconds: dict[str, float] = field(default_factory=dict, compare=False)
+
+    def __repr__(self) -> str:
+        return f"<Quality {' '.join(f'{name}={value:.4g}' for name, value in self._overall().items())}>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><td>{name}</td><td>{value:.4g}</td></tr>" for name, value in self._overall().items())
+        return f"<table><tr><th>measure</th><th>value</th></tr>{rows}</table>"
+
+    def _overall(self) -> dict[str, float]:
+        """Return what there is a value of: "inside_curve" and the like."""
+        sections = {name: section for name, section in self.as_dict().items() if name in SAID}
+        values = {f"{name}_{key}": value for name, section in sections.items() for key, value in section.items()}
+        return {name: value for name, value in values.items() if isinstance(value, (int, float))}
 
     def as_dict(self) -> Document:
         """Return the overall values as plain JSON values: never NaN, the same keys always."""

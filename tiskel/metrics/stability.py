@@ -25,12 +25,15 @@ from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
 from tiskel.metrics.distributions import UNIFORM_UP_TO, Distribution, distance_from_uniform, distribution
 from tiskel.metrics.hulls import outside_hull
 from tiskel.params import StabilityParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import StabilitySettings
 from tiskel.progress import Report, Span
+from tiskel.shown import Brief
 
 BEYOND = 0.12  # share of angles over a right one that is named as the reason
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StepStability:
     """One step held against the original.
 
@@ -68,8 +71,8 @@ class StepStability:
     reason: str
 
 
-@dataclass(frozen=True)
-class Stability:
+@dataclass(frozen=True, eq=False, repr=False)
+class Stability(Brief):
     """The steps of a contraction; its verdict is that of the last.
 
     Attributes
@@ -85,6 +88,8 @@ class Stability:
     >>> stability.stable, stability.points, len(stability.steps) == len(stability.as_dict()["steps"])
     (True, 1000, True)
     """
+
+    _said = ("stable", "reason", "points", "steps")
 
     steps: tuple[StepStability, ...]
     points: int
@@ -116,8 +121,9 @@ def _plain(step: StepStability) -> dict[str, Any]:
 
 
 def assess_stability(
-    contraction: Contraction, params: StabilityParams | None = None, *, progress: Report | None = None
-) -> Stability:
+    contraction: Contraction, params: StabilityParams | None = None, *, progress: Report | None = None,
+    **settings: Unpack[StabilitySettings],
+) -> Stability:  # fmt: skip
     """Judge the steps of a contraction by how normals and curvatures change.
 
     Only points that survive all steps count; both normals of a point are oriented away from its final position.
@@ -127,6 +133,7 @@ def assess_stability(
     contraction : Contraction, with its history.
     params : StabilityParams, optional; the settings.
     progress : callable, optional; called with a :class:`tiskel.Progress` as parts begin.
+    **settings : those of :class:`tiskel.StabilityParams` by name; over those of params.
 
     Raises
     ------
@@ -138,7 +145,7 @@ def assess_stability(
     >>> assess_stability(contract(make_shape(shape_graph("banana"), ShapeParams(count=1000))[0])).stable
     True
     """
-    params = params or StabilityParams()
+    params = settled(StabilityParams, params, settings)
     c, span = contraction, Span(progress, "stability")
     span.at(0, "normals")
     if len(c.history) == 0 and len(c.steps):

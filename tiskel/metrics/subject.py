@@ -12,6 +12,7 @@ from tiskel.arrays import (
     Frame,
     Mask,
     Points,
+    PointsLike,
     as_points,
     check_solid,
     finite_rows,
@@ -20,15 +21,17 @@ from tiskel.arrays import (
 )
 from tiskel.errors import TiskelError
 from tiskel.geometry.curve import curve_samples
+from tiskel.geometry.given import given_cloud
 from tiskel.geometry.graph import CurveGraph, tidy_edges
 from tiskel.geometry.strays import stray_points
 from tiskel.params import Normalisation
+from tiskel.skeleton import Skeleton
 
 TARGET_SAMPLES = 1000  # places on a curve that a cloud may contract to
 NO_POINTS: Points = np.zeros((0, 3))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Subject:
     """A cloud and the skeleton that is measured against it, in normalised coordinates.
 
@@ -75,9 +78,36 @@ class Subject:
         return np.asarray(places[cKDTree(places).query(self.cloud)[1]])
 
 
+def arrays_of(
+    cloud: PointsLike | CurveGraph, points: PointsLike | CurveGraph | None, nodes: npt.ArrayLike | None,
+    edges: npt.ArrayLike | None, origin: npt.ArrayLike | None,
+) -> tuple[Points, PointsLike | None, npt.ArrayLike | None, npt.ArrayLike | None, npt.ArrayLike | None]:  # fmt: skip
+    """Return cloud, points, nodes, edges and origin, as far as they are there, out of the skeleton that holds them.
+
+    Raises
+    ------
+    TiskelError
+        Where a skeleton comes with arrays beside it, or a curve without a cloud.
+    """
+    if isinstance(cloud, CurveGraph):
+        given, curve = points, cloud
+        cloud = curve.cloud if isinstance(curve, Skeleton) else NO_POINTS
+        if len(cloud) == 0:
+            raise TiskelError("the curve comes without its cloud; give that first: evaluate(cloud, curve)")
+    elif isinstance(points, CurveGraph):
+        given, curve = None, points
+    else:
+        return given_cloud(cloud)[0], points, nodes, edges, origin
+    if not given is nodes is edges is origin is None:
+        raise TiskelError("a skeleton brings points, nodes, edges and origin along; leave them out, or give arrays")
+    some = isinstance(curve, Skeleton) and len(curve.contracted) > 0
+    points, origin = (curve.contracted, curve.origin) if some else (None, None)  # type: ignore[attr-defined]
+    return given_cloud(cloud)[0], points, curve.nodes, curve.edges, origin
+
+
 def make_subject(
     cloud: npt.ArrayLike,
-    points: npt.ArrayLike | None,
+    points: PointsLike | None,
     nodes: npt.ArrayLike | None,
     edges: npt.ArrayLike | None,
     origin: npt.ArrayLike | None,
@@ -137,13 +167,13 @@ def make_subject(
 
 
 def _points(
-    points: npt.ArrayLike | None, origin: npt.ArrayLike | None, given: Points, kept: Mask, distinct: Points,
+    points: PointsLike | None, origin: npt.ArrayLike | None, given: Points, kept: Mask, distinct: Points,
     warnings: list[str],
 ) -> tuple[Points, Points, str]:  # fmt: skip
     """Return skeletal points, their originals, and how these were found; kept says which rows of the cloud count."""
     if points is None:
         return NO_POINTS, NO_POINTS, "none"
-    skeletal = as_points(points) if np.size(points) else NO_POINTS
+    skeletal = as_points(points) if np.size(points) else NO_POINTS  # type: ignore[arg-type]
     originals, how = (as_points(origin), "given") if origin is not None else (given, "rows")
     if origin is not None and len(originals) != len(skeletal):
         raise TiskelError(f"origin must have a row for each of the {len(skeletal)} points, got {len(originals)}")

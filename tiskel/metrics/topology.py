@@ -12,7 +12,7 @@ from tiskel.params import MetricParams
 PERCENTILE, SHARE = 99, 0.05  # of nearest-neighbour distances; least share of the bars that is kept [T]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Topology:
     """How alike two H0 barcodes are; lengths in normalised units, as published.
 

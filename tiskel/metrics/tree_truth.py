@@ -85,7 +85,7 @@ class TreeAgreement:
         return document | {"radii": [error.as_dict() for error in self.radii]}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Way:
     """From the parts of one curve to the nearest places of another."""
 

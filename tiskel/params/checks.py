@@ -1,5 +1,6 @@
 """What settings may be: the checks that all of them share."""
 
+from collections.abc import Iterable
 from math import inf, isfinite
 
 from tiskel.errors import TiskelError
@@ -51,3 +52,18 @@ def of_its_type(name: str, value: object, default: object) -> None:
         right = isinstance(value, str) or (number and isinstance(value, int))
     if not right:
         raise TiskelError(f"setting {name} cannot be {str(value)[:40]!r}; run the stage that wrote it again")
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """Return a question after the name that was probably meant, empty where none is like it.
+
+    Examples
+    --------
+    >>> from tiskel.params.checks import meant
+    >>> meant("intervall", ["interval", "gap"]), meant("colour", ["interval"])
+    ('; did you mean interval?', '')
+    """
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, list(known), 1)
+    return f"; did you mean {near[0]}?" if near else ""

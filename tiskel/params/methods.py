@@ -10,7 +10,7 @@ from math import inf
 from typing import Any, Literal, get_args
 
 from tiskel.errors import TiskelError
-from tiskel.params.checks import among, at_least, between, finite, of_its_type, so_many
+from tiskel.params.checks import among, at_least, between, finite, meant, of_its_type, so_many
 
 Method = Literal["robust", "gls", "lbc"]
 Normalisation = Literal["side", "diagonal"]
@@ -217,7 +217,9 @@ def refuse_foreign(kind: type[ContractionParams], names: Iterable[str]) -> None:
             continue
         owners = [other for other, owner in CLASSES.items() if name in settings_of(owner)]
         if not owners:
-            raise TiskelError(f"no method has a setting {name}; {method} has {', '.join(sorted(settings_of(kind)))}")
+            known = {each for owner in CLASSES.values() for each in settings_of(owner)}
+            near = meant(name, known) or f"; {method} has {', '.join(sorted(settings_of(kind)))}"
+            raise TiskelError(f"no method has a setting {name}{near}")
         several = f"method{'s' * (len(owners) > 1)} {' and '.join(owners)}"
         raise TiskelError(f"{name} is a setting of {several}, {method} does not read it; leave it out")
 

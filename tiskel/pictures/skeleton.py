@@ -39,14 +39,38 @@ def skeleton_picture(skeleton: Skeleton, title: str, kind: str = "png", look: Lo
     -------
     bytes
     """
-    return three_views(body_of(skeleton.cloud), skeleton, f"{title}: {_counts(skeleton)}", kind, look)
+    return rendered(skeleton_figure(skeleton, title, look), kind)
+
+
+def skeleton_figure(skeleton: Skeleton, title: str = "", look: LookParams | None = None) -> Any:
+    """Return front, side and top view of a skeleton in its cloud, if it has one, and a view in space.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        What is drawn.
+    title : str
+        What stands above, before the counts.
+    look : LookParams, optional
+        Which axis points up, and the unit of length.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    places = body_of(skeleton.cloud) if len(skeleton.cloud) else skeleton.nodes
+    words = f"{title}: {_counts(skeleton)}" if title else _counts(skeleton)
+    return _views(places, skeleton, words, look or LookParams())
 
 
 def three_views(
     cloud: Points, curve: CurveGraph | Points, title: str, kind: str = "png", look: LookParams | None = None
 ) -> bytes:
     """Return three views and one in space of a cloud without stray points and a curve, or contracted points (m, 3)."""
-    chosen = look or LookParams()
+    return rendered(_views(cloud, curve, title, look or LookParams()), kind)
+
+
+def _views(cloud: Points, curve: CurveGraph | Points, title: str, chosen: LookParams) -> Any:
     up = up_axis(cloud, chosen.up)
     front, side, _ = views(up)
     (across, height), (depth, _) = front.extent(cloud), side.extent(cloud)
@@ -64,7 +88,7 @@ def three_views(
     _in_space(figure.add_subplot(grid[0, 1]), cloud, curve, up)
     named(figure, LEGEND if isinstance(curve, CurveGraph) else (LEGEND[0], ("contracted points", CURVE, "o")))
     figure.suptitle(title, fontsize=SIZES["title"])
-    return rendered(figure, kind)
+    return figure
 
 
 def _in_space(panel: Any, cloud: Points, curve: CurveGraph | Points, up: str) -> None:

@@ -4,18 +4,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from tiskel.arrays import Mask, Points, as_points, diagonal, finite_rows
+from tiskel.arrays import Mask, Points, PointsLike, diagonal, finite_rows
 from tiskel.errors import TiskelError
+from tiskel.geometry.given import given_cloud
 from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.geometry.strays import body_of, stray_points
 from tiskel.params import ConditioningParams, NoiseKind
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import ConditioningSettings
 from tiskel.preprocess.capping import cap_points
 
 OUTLIER_NEIGHBOURS = 17  # the point included; sixteen others, a common choice of statistical removal
 OUTLIER_DEVIATIONS = 2.0
 
 
-def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple[str, ...]]:
+def condition(
+    points: PointsLike, params: ConditioningParams | None = None, **settings: Unpack[ConditioningSettings]
+) -> tuple[Points, tuple[str, ...]]:
     """Crop, remove outliers, thin, cap and blur a cloud, in this order.
 
     Rows that are not finite are left for the next stage to count, unless
@@ -23,10 +28,12 @@ def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple
 
     Parameters
     ----------
-    points : (n, 3) float64
+    points : (n, 3) array, Cloud, or object of Open3D or trimesh
         The cloud, in any unit.
-    params : ConditioningParams
+    params : ConditioningParams, optional
         What is done; by default nothing.
+    **settings
+        Those of :class:`tiskel.ConditioningParams` by name; over those of params.
 
     Returns
     -------
@@ -42,16 +49,16 @@ def condition(points: Points, params: ConditioningParams) -> tuple[Points, tuple
 
     Examples
     --------
-    >>> from tiskel import ConditioningParams, condition, make_shape, shape_graph
+    >>> from tiskel import condition, make_shape, shape_graph
     >>> cloud, _ = make_shape(shape_graph("capsule"))
-    >>> thinned, report = condition(cloud, ConditioningParams(sample=1000))
+    >>> thinned, report = condition(cloud, sample=1000)
     >>> thinned.shape, report
     ((1000, 3), ('sampling took away 3096 points',))
     """
     report: list[str] = []
+    params, every = settled(ConditioningParams, params, settings), given_cloud(points)[0]
     if replace(params, columns=None, classification=None) == ConditioningParams(seed=params.seed):
-        return points, ()
-    every = as_points(points)
+        return every, ()
     points = every[finite_rows(every)]
     _say(report, every, points, "dropped {} rows with NaN or Inf")
     if params.crop is not None:

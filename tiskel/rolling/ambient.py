@@ -142,7 +142,7 @@ def frame_of(x: Numbers, z: Numbers) -> Table:
     return np.asarray(np.array([x, _cross(z, x), z]).T)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AmbientRate:
     """The right-hand side: derivatives of the state (10,): place, quaternion, and the frame's x.
 

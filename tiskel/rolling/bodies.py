@@ -13,20 +13,24 @@ import numpy as np
 from tiskel.arrays import Numbers, Points, Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import RollSettings
+from tiskel.progress import Report, Span
 from tiskel.rolling.endings import Ending, ends_of_branch, poles
 from tiskel.rolling.equations import contact_rates
 from tiskel.rolling.inputs import Inputs, constant
-from tiskel.rolling.solution import Solution, solve
+from tiskel.rolling.solution import Solution, duration_of, solve, told_of
 from tiskel.rolling.sphere import quaternions_of, turn_of
 from tiskel.rolling.trajectory import RollStatus
+from tiskel.shown import Brief
 from tiskel.surfaces.forms import Forms, curvature, forms_of
 from tiskel.surfaces.jets import ParametricSurface
 
 TOUCHING = 1e-6  # of the relative curvature at the start: less is none
 
 
-@dataclass(frozen=True)
-class BodyTrajectory:
+@dataclass(frozen=True, eq=False, repr=False)
+class BodyTrajectory(Brief):
     """A body's way over a surface; units as in :class:`tiskel.Trajectory`.
 
     Attributes
@@ -58,6 +62,8 @@ class BodyTrajectory:
     ((11,), (11, 3), (11, 4), 'finished')
     """
 
+    _said = ("t", "status", "reason")
+
     t: Numbers
     state: Table
     contact: Points
@@ -69,8 +75,9 @@ class BodyTrajectory:
 
 
 def roll_body(
-    surface: ParametricSurface, body: ParametricSurface, params: RollParams | None = None, inputs: Inputs | None = None
-) -> BodyTrajectory:
+    surface: ParametricSurface, body: ParametricSurface, params: RollParams | None = None, inputs: Inputs | None = None,
+    *, progress: Report | None = None, **settings: Unpack[RollSettings],
+) -> BodyTrajectory:  # fmt: skip
     """Roll a body over a surface, both of any shape (Montana 1988; see :mod:`tiskel.rolling.equations`).
 
     Parameters
@@ -83,6 +90,10 @@ def roll_body(
         side, omega, velocity, duration, rate, start and the tolerances count; the twist is that of the object.
     inputs : Inputs, optional
         omega and V over time, in place of those of the settings.
+    progress : callable, optional
+        Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the run.
+    **settings
+        Those of :class:`tiskel.RollParams` by name; over those of params.
 
     Returns
     -------
@@ -103,7 +114,8 @@ def roll_body(
     >>> r.status.value, r.state.shape, bool(r.margin.min() > 0)
     ('finished', (31, 5), True)
     """
-    params = params or RollParams()
+    params, span = settled(RollParams, params, settings), Span(progress, "roll")
+    span.at(0, "start")
     if params.twist != "object":
         raise TiskelError(f"two bodies take the twist of the object, got twist {params.twist!r}")
     inputs = inputs or constant(params)
@@ -125,7 +137,10 @@ def roll_body(
         RollStatus.TIGHT, "the bodies bend alike and would meet beside their contact",
         lambda *place: pair.margin(*place) - TOUCHING * least,
     )  # fmt: skip
-    return pair.read(solve(rate, start, params, inputs, np.inf, [*ends, tight]))
+    told = rate if progress is None else told_of(rate, duration_of(params, inputs), span)
+    solution = solve(told, start, params, inputs, np.inf, [*ends, tight])
+    span.at(1)
+    return pair.read(solution)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ CHANGES = 200  # of contact in one run: more are a ball that rattles in a groove
 RISING = -1e-9  # radii per radian: a centre that sinks faster towards the contact it leaves is wedged
 
 
-@dataclass
+@dataclass(eq=False)
 class Stretches:
     """A solved run, stretch by stretch.
 

@@ -8,12 +8,13 @@ from tiskel.arrays import Numbers, Table
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 from tiskel.rolling.equations import Triple
+from tiskel.shown import Brief
 
 PAUSE = 10.0  # times the median step between rows: a longer one is told
 
 
-@dataclass(frozen=True)
-class Inputs:
+@dataclass(frozen=True, eq=False, repr=False)
+class Inputs(Brief):
     """omega and V over time, straight between the rows, held before the first and after the last.
 
     Attributes
@@ -40,6 +41,8 @@ class Inputs:
     >>> inputs.slips
     True
     """
+
+    _said = ("t", "slips")
 
     t: Numbers
     values: Table

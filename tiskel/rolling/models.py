@@ -56,7 +56,7 @@ class GlobalModel:
         return object_rates(forms, self.radius, omega, velocity)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LocalModel:
     """A straight skeleton, and a radius that is as at the contact all along it.
 

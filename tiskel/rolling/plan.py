@@ -9,6 +9,8 @@ import numpy as np
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.params import PlanParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import PlanSettings
 from tiskel.progress import Report, Span
 from tiskel.rolling.ambient import Ground, frame_about
 from tiskel.rolling.begin import radius_of, standing_place
@@ -21,6 +23,7 @@ from tiskel.rolling.roll_on import roll_on
 from tiskel.rolling.second import Surroundings
 from tiskel.rolling.segments import Segment, Shooting, joined, of_moves, of_way
 from tiskel.rolling.trajectory import RollStatus, Trajectory
+from tiskel.shown import Brief
 from tiskel.surfaces.implicit import ImplicitSurface
 
 ROUNDS = 6  # of rolling a plan and correcting it
@@ -29,8 +32,8 @@ TIGHT = "every way that was tried leads through places that are too tight for it
 SITES = 5  # places along a way where a loop for the attitude is tried besides its ends
 
 
-@dataclass(frozen=True)
-class Plan:
+@dataclass(frozen=True, eq=False, repr=False)
+class Plan(Brief):
     """Inputs that roll a sphere to where it should be, and the run that shows it.
 
     Attributes
@@ -62,6 +65,8 @@ class Plan:
     ('finished', None, 0.5)
     """
 
+    _said = ("inputs", "way", "loop", "off", "turned_off", "rounds")
+
     inputs: Inputs
     run: Trajectory
     way: Points
@@ -82,7 +87,10 @@ class Plan:
         }  # fmt: skip
 
 
-def plan_roll(surface: ImplicitSurface, params: PlanParams, *, progress: Report | None = None) -> Plan:
+def plan_roll(
+    surface: ImplicitSurface, params: PlanParams | None = None, *, progress: Report | None = None,
+    **settings: Unpack[PlanSettings],
+) -> Plan:  # fmt: skip
     """Plan how to roll a sphere from a contact to a contact and, if asked, to an attitude, without slip.
 
     The shortest way of the centre over places where the sphere fits is pulled
@@ -94,10 +102,12 @@ def plan_roll(surface: ImplicitSurface, params: PlanParams, *, progress: Report 
     ----------
     surface : ImplicitSurface
         The surface of a whole body, or an analytic one; lengths in any unit.
-    params : PlanParams
+    params : PlanParams, optional
         From where to where, and what the sphere may do.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the search.
+    **settings
+        Those of :class:`tiskel.PlanParams` by name; over those of params.
 
     Returns
     -------
@@ -118,7 +128,7 @@ def plan_roll(surface: ImplicitSurface, params: PlanParams, *, progress: Report 
     >>> plan.off < 1e-3, round(plan.run.path_object, 2)
     (True, 1.79)
     """
-    span = Span(progress, "plan")
+    params, span = settled(PlanParams, params, settings), Span(progress, "plan")
     span.at(0, "places")
     ground = Ground(surface, params.roll.sigma, radius_of(surface, params.radius))
     standing = Standing(ground, Surroundings.of(ground), np.array(params.avoid, float).reshape(-1, 4))

@@ -22,7 +22,7 @@ from tiskel.surfaces.tube import V_STOP, Tube
 AROUND, PER_SLICE = 48, 1  # places where the shape operator is taken; it is straight between them
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PrintedModel:
     """A surface whose curvature comes from elsewhere.
 

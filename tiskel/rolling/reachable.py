@@ -27,7 +27,7 @@ CLOSED = 0.3  # radii about a place that is closed
 MORE = 6  # rounds of the search after the goal was reached: for ways around that turn out shorter
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Standing:
     """What a sphere needs of a place to stand there.
 

@@ -7,6 +7,8 @@ import numpy as np
 from tiskel.arrays import TINY, Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import RollSettings
 from tiskel.progress import Report, Span
 from tiskel.rolling.endings import Ending, endings
 from tiskel.rolling.equations import frame_turn, margin
@@ -30,7 +32,7 @@ FAR = 1.0  # radii of the body, or of the sphere: places to start at that are fa
 
 def roll(
     surface: ParametricSurface, params: RollParams | None = None, inputs: Inputs | None = None, *,
-    progress: Report | None = None,
+    progress: Report | None = None, **settings: Unpack[RollSettings],
 ) -> Trajectory:  # fmt: skip
     """Roll a sphere over a surface (Wen et al. 2025, corrected; see :mod:`tiskel.rolling.equations`).
 
@@ -49,6 +51,8 @@ def roll(
         omega and V over time, in place of those of the settings.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the run.
+    **settings
+        Those of :class:`tiskel.RollParams` by name; over those of params.
 
     Returns
     -------
@@ -75,7 +79,8 @@ def roll(
     """
     span = Span(progress, "roll")
     span.at(0, "start")
-    params, inputs = params or RollParams(), inputs or constant(params or RollParams())
+    params = settled(RollParams, params, settings)
+    inputs = inputs or constant(params)
     if params.model == "body":
         raise TiskelError("model 'body' rolls over the surface of a whole body; give that one to roll_on")
     radius = params.radius or USUAL_RADIUS * median_radius(surface)
@@ -113,7 +118,7 @@ def median_radius(surface: ParametricSurface) -> float:
     return float(np.median(tube.series.along(np.linspace(0, V_STOP, GRID[1]))[:, 0, 0]))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Rate:
     """The right-hand side: derivatives of u_o, v_o and the quaternion of F^T Q, the sphere as the contact sees it."""
 

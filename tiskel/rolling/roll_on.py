@@ -7,6 +7,8 @@ import numpy as np
 from tiskel.arrays import Numbers
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import RollSettings
 from tiskel.progress import Report, Span
 from tiskel.rolling.ambient import AmbientRate, Ground, frame_about
 from tiskel.rolling.begin import first_place, radius_of
@@ -22,7 +24,7 @@ from tiskel.surfaces.implicit import ImplicitSurface
 
 def roll_on(
     surface: ImplicitSurface, params: RollParams | None = None, inputs: Inputs | None = None, *,
-    progress: Report | None = None,
+    progress: Report | None = None, **settings: Unpack[RollSettings],
 ) -> Trajectory:  # fmt: skip
     """Roll a sphere over a surface that has no chart (see :mod:`tiskel.rolling.ambient`).
 
@@ -38,6 +40,8 @@ def roll_on(
         omega and V over time, in place of those of the settings.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the run.
+    **settings
+        Those of :class:`tiskel.RollParams` by name; over those of params.
 
     Returns
     -------
@@ -64,7 +68,8 @@ def roll_on(
     """
     span = Span(progress, "roll")
     span.at(0, "start")
-    params, inputs = replace(params or RollParams(), model="body"), inputs or constant(params or RollParams())
+    params = replace(settled(RollParams, params, settings), model="body")
+    inputs = inputs or constant(params)
     ground = Ground(surface, params.sigma, radius_of(surface, params.radius))
     around = Surroundings.of(ground)
     rate = AmbientRate(ground, inputs, params.twist, first_place(ground, around, params))

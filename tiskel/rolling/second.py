@@ -38,7 +38,7 @@ class Second(NamedTuple):
     place: Numbers | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surroundings:
     """A ground and what is known to lie on it.
 

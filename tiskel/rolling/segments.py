@@ -18,7 +18,7 @@ STEPS, MOST = 8, 0.5  # of Newton's method: steps, and radians of one
 NUDGE, SMALL = 0.01, 1e-5  # radians for differences, and what is none
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Segment:
     """A piece of a plan.
 

@@ -19,7 +19,7 @@ USUAL_DURATION = 10.0  # seconds
 STRIDE = 0.4  # radians that the body turns in a step of the solver at most: endings are looked for between steps
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """A solved run, before its states are read.
 

@@ -9,6 +9,7 @@ import numpy as np
 from tiskel.arrays import Numbers, Points, Table
 from tiskel.params import RollParams
 from tiskel.rolling.inputs import Inputs
+from tiskel.shown import Shown
 
 SLIPLESS = 1e-3  # of a way: without slip the two ways are not farther apart
 STANDING = 1e-6  # of the sphere's radius: shorter ways are rounding
@@ -66,8 +67,8 @@ class RollStatus(str, Enum):
     DOUBTFUL = "the surface is not trusted"
 
 
-@dataclass(frozen=True)
-class Trajectory:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory(Shown):
     """A sphere's way over a surface; lengths in the surface's unit, angles in radians, times in seconds.
 
     Attributes
@@ -124,6 +125,8 @@ class Trajectory:
     >>> f"{r.path_object:.4f} {r.path_sphere:.4f} {r.margin.min():.4f}"
     '2.0000 2.0000 2.0000'
     """
+
+    _said = ("t", "radius", "path_object", "status", "reason", "warnings")
 
     t: Numbers
     state: Table

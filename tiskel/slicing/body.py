@@ -5,13 +5,16 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Indices, Numbers, Points, as_points
+from tiskel.arrays import TINY, Indices, Numbers, Points, PointsLike
 from tiskel.errors import TiskelError
+from tiskel.geometry.given import given_cloud
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.quadrics import Quadrics
 from tiskel.geometry.strays import body_rows
 from tiskel.params import BodyParams, SurfaceParams
-from tiskel.progress import Report
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import BodySettings, SurfaceSettings
+from tiskel.progress import Report, Span
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.body_points import BodyPoints, body_points
 from tiskel.slicing.body_tubes import on_tubes
@@ -30,7 +33,7 @@ TURN = 0.4  # radians that a tube bends over the width of a patch at most
 
 def fit_body(
     skeleton: CurveGraph, surfaces: Surfaces | None = None, params: BodyParams | None = None,
-    cloud: Points | None = None,
+    cloud: PointsLike | None = None, *, progress: Report | None = None, **settings: Unpack[BodySettings],
 ) -> BodySurface:  # fmt: skip
     """Fit one closed surface to the whole body: joints and ends are places like others.
 
@@ -42,8 +45,12 @@ def fit_body(
         Tubes fitted along its branches.
     params : BodyParams, optional
         The settings.
-    cloud : (n, 3) float64, optional
+    cloud : (n, 3) array, Cloud, or object of Open3D or trimesh, optional
         The cloud around a curve from elsewhere, in its unit; a skeleton brings its own.
+    progress : callable, optional
+        Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the fit.
+    **settings
+        Those of :class:`tiskel.BodyParams` by name; over those of params.
 
     Returns
     -------
@@ -62,18 +69,22 @@ def fit_body(
     >>> body.summary["coverage"], body.summary["mean"] < 0.001
     (1.0, True)
     """
-    params = params or BodyParams()
+    params, span = settled(BodyParams, params, settings), Span(progress, "body")
+    span.at(0, "points")
     if cloud is None and not isinstance(skeleton, Skeleton):
         raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
-    every = as_points(skeleton.cloud if cloud is None else cloud)  # type: ignore[attr-defined]
+    every = given_cloud(skeleton.cloud if cloud is None else cloud)[0]  # type: ignore[attr-defined]
     body = body_points(skeleton, every, params)
+    span.at(0.4, "patches")
     surface = BodySurface(
         _patches(body, surfaces, params).sorted(), every, np.zeros(0), float(np.median(body.radii[body.seen]))
     )
+    span.at(0.7, "distances")
     distances = np.full(len(every), np.nan)
     whole = body_rows(every)
     distances[whole] = np.linalg.norm(projected(surface, every[whole]) - every[whole], axis=1)
     surface = replace(surface, distances=distances)
+    span.at(1)
     return replace(surface, warnings=_doubts(surface, body.trusted))
 
 
@@ -89,14 +100,14 @@ def _doubts(surface: BodySurface, trusted: bool) -> tuple[str, ...]:
 
 
 def fit_whole(
-    skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: Points | None = None, *,
-    body: BodyParams | None = None, progress: Report | None = None,
+    skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: PointsLike | None = None, *,
+    body: BodyParams | None = None, progress: Report | None = None, **settings: Unpack[SurfaceSettings],
 ) -> Surfaces:  # fmt: skip
     """Fit tubes along the branches of a skeleton, as far as there are any, and one surface to the whole body.
 
     Parameters
     ----------
-    skeleton, params, cloud, progress
+    skeleton, params, cloud, progress, **settings
         See :func:`tiskel.fit_surface`.
     body : BodyParams, optional
         The settings of the whole surface.
@@ -122,11 +133,11 @@ def fit_whole(
     (0, 1.0)
     """
     try:
-        found = fit_surface(skeleton, params, cloud, progress=progress)
+        found = fit_surface(skeleton, params, cloud, progress=progress, **settings)
     except NoTubeError as none:
-        every = skeleton.cloud if isinstance(skeleton, Skeleton) and cloud is None else as_points(cloud)  # type: ignore[arg-type]
+        every = skeleton.cloud if isinstance(skeleton, Skeleton) and cloud is None else given_cloud(cloud)[0]  # type: ignore[arg-type]
         found = Surfaces((), none.rejected, every)
-    return replace(found, body=fit_body(skeleton, found, body, found.cloud))
+    return replace(found, body=fit_body(skeleton, found, body, found.cloud, progress=progress))
 
 
 def _patches(body: BodyPoints, surfaces: Surfaces | None, params: BodyParams) -> Patches:

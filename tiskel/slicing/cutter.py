@@ -32,7 +32,7 @@ class Rejected(Exception):
     """A branch without a surface, and why."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cutter:
     """What all slices of a branch share.
 

@@ -6,13 +6,16 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Mask, Points, as_points, diagonal
+from tiskel.arrays import Mask, Points, PointsLike, diagonal
 from tiskel.errors import TiskelError
 from tiskel.geometry.frames import step_lengths
+from tiskel.geometry.given import given_cloud
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.spacing import spacing_of
 from tiskel.geometry.strays import body_rows
 from tiskel.params import SurfaceParams
+from tiskel.params.given import Unpack, settled
+from tiskel.params.keywords import SurfaceSettings
 from tiskel.progress import Report, Span
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.axis import evened, fit_axis
@@ -32,8 +35,8 @@ RECENTRINGS = 2  # rounds
 
 
 def fit_surface(
-    skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: Points | None = None, *,
-    progress: Report | None = None,
+    skeleton: CurveGraph, params: SurfaceParams | None = None, cloud: PointsLike | None = None, *,
+    progress: Report | None = None, **settings: Unpack[SurfaceSettings],
 ) -> Surfaces:  # fmt: skip
     """Fit a Fourier surface around every branch of a skeleton (Wen et al. 2025; see :mod:`tiskel.surfaces.tube`).
 
@@ -46,10 +49,12 @@ def fit_surface(
         The curve, in any unit.
     params : SurfaceParams, optional
         The settings.
-    cloud : (n, 3) float64, optional
+    cloud : (n, 3) array, Cloud, or object of Open3D or trimesh, optional
         The cloud around a curve from elsewhere, in its unit; a skeleton brings its own.
     progress : callable, optional
         Called with a :class:`tiskel.Progress` as parts begin; what it raises ends the fit.
+    **settings
+        Those of :class:`tiskel.SurfaceParams` by name; over those of params.
 
     Returns
     -------
@@ -69,15 +74,15 @@ def fit_surface(
     >>> len(surfaces), surfaces[0].order, surfaces[0].error < 0.01
     (1, 3, True)
     """
-    params, span = params or SurfaceParams(), Span(progress, "slice")
+    params, span = settled(SurfaceParams, params, settings), Span(progress, "slice")
     span.at(0, "cloud")
     if isinstance(skeleton, Skeleton):
-        every, owner = skeleton.cloud if cloud is None else as_points(cloud), skeleton.node_of_point
+        every, owner = skeleton.cloud if cloud is None else given_cloud(cloud)[0], skeleton.node_of_point
         owned = len(owner) == len(every)
     elif cloud is None:
         raise TiskelError("a curve needs the cloud that it runs through; give it, or a skeleton of tiskel")
     else:
-        every, owned = as_points(cloud), False
+        every, owned = given_cloud(cloud)[0], False
     body, surfaces, rejected = body_rows(every), [], {}
     for number, path in enumerate(paths := paths_of(skeleton, params.branch)):
         span.at(number / len(paths), f"branch {path.name}")

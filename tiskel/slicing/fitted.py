@@ -8,6 +8,7 @@ import numpy as np
 
 from tiskel.arrays import Floats, Indices, Labels, Points
 from tiskel.errors import TiskelError
+from tiskel.shown import Shown
 from tiskel.slicing.sections import Case, Section
 from tiskel.surfaces.jets import Jet, Scalar
 from tiskel.surfaces.patches import BodySurface
@@ -16,8 +17,8 @@ from tiskel.surfaces.tube import V_STOP, Tube
 BRIDGED, UNSEEN, MEASURED = 0, 1, 2  # trust in a place: slices without a fit, a side without points, points all about
 
 
-@dataclass(frozen=True)
-class FittedSurface:
+@dataclass(frozen=True, eq=False, repr=False)
+class FittedSurface(Shown):
     """A Fourier surface along one path of a skeleton; lengths in the input's unit.
 
     Attributes
@@ -59,6 +60,8 @@ class FittedSurface:
     >>> surface.frame, surface.cases(), surface.warnings
     ('m', {'fitted': 19}, ())
     """
+
+    _said = ("name", "order", "sections", "length", "radius", "error", "warnings")
 
     tube: Tube
     name: str
@@ -161,8 +164,8 @@ class Coverage:
     radii: dict[str, float]
 
 
-@dataclass(frozen=True)
-class Surfaces:
+@dataclass(frozen=True, eq=False, repr=False)
+class Surfaces(Shown):
     """The surfaces of a skeleton, in the order of its branches; a sequence.
 
     Attributes
@@ -186,6 +189,8 @@ class Surfaces:
     >>> [surface.name for surface in surfaces], surfaces.rejected, surfaces.named(None) is surfaces[0]
     (['0'], {}, True)
     """
+
+    _said = ("surfaces", "rejected", "cloud")
 
     surfaces: tuple[FittedSurface, ...]
     rejected: dict[str, str]

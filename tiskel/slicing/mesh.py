@@ -16,7 +16,7 @@ AROUND, PER_SLICE = 96, 3  # vertices around the curve, and rows of them per sli
 SAMPLES = 512  # of one section, for its area and perimeter
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """A triangle mesh.
 

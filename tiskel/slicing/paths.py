@@ -14,7 +14,7 @@ from tiskel.geometry.graph import CurveGraph, component_labels
 LEAST_NODES = 3  # fewer have no direction to follow
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Path:
     """A path along a curve.
 

@@ -14,7 +14,7 @@ ALIKE = 0.5, 1.6  # median radius of a part of the ring, in that of its largest 
 PROJECTIONS = 3  # Newton steps to the plane through a point
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ring:
     """The points of one section, in cylinder coordinates about the skeleton curve.
 

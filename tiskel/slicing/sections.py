@@ -35,7 +35,7 @@ class Case(str, Enum):
     ROUGH = "no smooth outline near its points"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Section:
     """One slice.
 

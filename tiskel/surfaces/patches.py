@@ -17,6 +17,7 @@ import numpy.typing as npt
 from tiskel.arrays import Indices, Numbers, Points, Table
 from tiskel.geometry.neighbours import morton_curve
 from tiskel.geometry.quadrics import matrices
+from tiskel.shown import Brief
 from tiskel.surfaces.implicit import LevelSet
 
 NEAR = 0.05  # local radii: what a surface covers is nearer than that
@@ -108,8 +109,8 @@ def _boxes(low: Points, high: Points, size: int) -> Table:
     return np.concatenate([np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)], axis=1)
 
 
-@dataclass(frozen=True, eq=False)
-class BodySurface:
+@dataclass(frozen=True, eq=False, repr=False)
+class BodySurface(Brief):
     """The closed surface of a whole body; lengths in the input's unit.
 
     Attributes
@@ -132,6 +133,8 @@ class BodySurface:
     >>> body.trust(body.cloud[:2]).tolist(), bool((abs(body.level(body.cloud).value) < 0.01 * body.radius).all())
     ([2, 2], True)
     """
+
+    _said = ("patches.centres", "cloud", "radius", "warnings")
 
     patches: Patches
     cloud: Points

@@ -83,7 +83,7 @@ class Radius(NamedTuple):
     vv: Scalar
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tube:
     """A Fourier surface; lengths in the unit of the cloud.
 

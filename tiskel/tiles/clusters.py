@@ -30,7 +30,7 @@ OFF = 0.02  # price of a cut at the rim of the slab, and a tenth of what pairs c
 WIDER = 0.01  # what a wide slab must be better by
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cut:
     """Where a cluster is cut.
 

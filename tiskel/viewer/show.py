@@ -17,9 +17,10 @@ from tiskel.io.clouds import Cloud
 from tiskel.io.stages.path import RolledPath
 from tiskel.io.streams import write_bytes
 from tiskel.metrics.result import Quality
-from tiskel.params import LookParams
+from tiskel.params import LookParams, Up
 from tiskel.pipeline import PipelineResult
 from tiskel.rolling.trajectory import Trajectory
+from tiskel.shown import Brief
 from tiskel.skeleton import Skeleton
 from tiskel.slicing.fitted import FittedSurface, Surfaces
 from tiskel.viewer.curves import (
@@ -39,8 +40,8 @@ from tiskel.viewer.surfaces import mesh_layer, path_layer, path_of, surface_laye
 SUFFIXES = (".html", ".htm", ".png", ".svg", ".pdf")
 
 
-@dataclass(frozen=True, eq=False)
-class View:
+@dataclass(frozen=True, eq=False, repr=False)
+class View(Brief):
     """Something to look at; a notebook shows it.
 
     Attributes
@@ -57,6 +58,8 @@ class View:
     >>> shown.html().startswith("<!doctype html>")
     True
     """
+
+    _said = ("scene.layers", "scene.remarks")
 
     scene: Scene
 
@@ -79,7 +82,7 @@ class View:
         return framed(self.html())
 
 
-def view(*things: Any, up: str = "auto", unit: str = "", title: str = "") -> View:
+def view(*things: Any, up: Up = "auto", unit: str = "", title: str = "") -> View:
     """Return clouds, curves, surfaces and runs as something to look at: a page, or a picture.
 
     Parameters
@@ -110,7 +113,7 @@ def view(*things: Any, up: str = "auto", unit: str = "", title: str = "") -> Vie
     >>> view(cloud, unit="m").scene.unit
     'm'
     """
-    look = LookParams(up=up, unit=unit)  # type: ignore[arg-type]
+    look = LookParams(up=up, unit=unit)
     gathered = _Gathered()
     every = list(_flat(things))
     for thing in every:

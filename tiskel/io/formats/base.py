@@ -14,7 +14,7 @@ NO_FACES: Edges = np.empty((0, 3), np.int32)
 Properties = Mapping[str, npt.NDArray[Any]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Parsed:
     """What a file holds.
 

@@ -13,7 +13,7 @@ MOST_NODES = 2**31  #: nodes are numbered by int32
 RADII = ("radius", "radii", "r", "maximuminscribedsphereradius", "thickness")  #: names of radii, in lower case
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lines:
     """A curve as a file has it.
 

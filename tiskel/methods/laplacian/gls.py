@@ -31,7 +31,7 @@ from tiskel.progress import SILENT, Span
 from tiskel.timing import Stopwatch
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _State:
     """The cloud between two steps; all arrays have one row per point that is left."""
 

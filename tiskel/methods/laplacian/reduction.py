@@ -25,7 +25,7 @@ from tiskel.geometry.rings import Rings
 MIN_RING = 3  # members that a merged ring must keep
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Merge:
     """The result of one reduction, in the rows of the cloud before it.
 

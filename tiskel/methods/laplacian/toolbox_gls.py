@@ -68,7 +68,7 @@ def contract_as_toolbox(
     )  # fmt: skip
 
 
-@dataclass
+@dataclass(eq=False)
 class _Run:
     """The cloud between two steps, one row per point that is left, and what has been recorded."""
 

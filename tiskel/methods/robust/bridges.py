@@ -31,7 +31,7 @@ BEND_FACING = 0.1  # cosine, see FACING [0, 0; where patches are missing]
 BEND_WIDTH = 1.25  # widest gap: the straight way between two such ends is no wider [0, 0; where patches are missing]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Gap:
     """A gap that is to be bridged.
 

@@ -10,7 +10,7 @@ from tiskel.arrays import Edges, Indices, Mask, Numbers, Points, resolved
 from tiskel.geometry.graph import CurveGraph, edge_keys, tidy_edges
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ConeCurve(CurveGraph):
     """A curve graph whose edges are round cones, and what of the cloud its nodes stand for.
 

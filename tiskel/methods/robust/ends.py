@@ -23,7 +23,7 @@ INNER = 0.9  # quantile of where the points are along a piece, at which its edge
 TUBE = 0.4  # ratio of how much normals spread along and across a piece, up to which it is one of a tube
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class OpenEnd:
     """An end without a cap.
 

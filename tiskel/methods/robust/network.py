@@ -26,7 +26,7 @@ LINE = 0.6  # (s1 - s2) / s1 with the root eigenvalues of the scatter: a line ab
 ALONG_NORMALS = 0.75  # cosine to both normals: such a step leaves the surface at both of its ends [13, 11]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Network:
     """A cloud in its own axes, and its neighbour graph.
 

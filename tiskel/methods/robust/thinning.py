@@ -46,7 +46,7 @@ DIGITS = 6  # of distances from a mean in the largest; what is alike to so many 
 CHUNK = 65_536  # cells whose neighbourhoods are summed at once, to bound memory
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Thinned:
     """A cloud of fewer points, each the mean of some of the given ones.
 
