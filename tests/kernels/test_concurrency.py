@@ -83,6 +83,19 @@ say(same(done[0], work("y")), len(work("torus", "gls")), bells)
     assert (tmp_path / "printed").read_text().count("\a") == int(bells) > 0
 
 
+def test_a_notebook_hears_nothing_of_the_start(tmp_path: Path) -> None:
+    """There sys.stdout is an object of its own."""
+    script = """
+import contextlib, io, os
+
+with open("errors", "w") as file, contextlib.redirect_stdout(io.StringIO()) as heard:
+    os.dup2(file.fileno(), 2)
+    work("y")
+say(repr(heard.getvalue() + open("errors").read()))
+"""
+    assert run(script, tmp_path) == "''"
+
+
 def test_a_kernel_that_fails_first_does_not_bind_the_start_to_its_thread(tmp_path: Path) -> None:
     script = """
 import threading

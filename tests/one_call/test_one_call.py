@@ -84,7 +84,7 @@ def test_tables_have_a_row_each() -> None:
 
 def test_tables_say_what_they_need(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
-    with pytest.raises(TiskelError, match="need it, and it is not installed; run: pip install pandas"):
+    with pytest.raises(TiskelError, match=r'need pandas, which is not installed; run: pip install "tiskel\[pandas\]"'):
         TRUE.to_pandas()
 
 

@@ -49,7 +49,7 @@ def skeleton_table(skeleton: Skeleton, what: Rows = "nodes") -> "pandas.DataFram
     try:
         import pandas
     except ImportError:
-        raise TiskelError("tables of pandas need it, and it is not installed; run: pip install pandas") from None
+        raise TiskelError('tables need pandas, which is not installed; run: pip install "tiskel[pandas]"') from None
     return pandas.DataFrame(TABLES[what](skeleton))
 
 
