@@ -3,6 +3,7 @@
 import gzip
 import io
 import struct
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -164,6 +165,25 @@ def test_obj_with_polygons_and_every_way_to_count(face: str) -> None:
     np.testing.assert_array_equal(parsed.faces, [[0, 1, 2], [0, 2, 3]])
 
 
+@pytest.mark.parametrize("kind", ["off", "obj"])
+@pytest.mark.parametrize("sides", [2, 4])
+def test_a_mesh_takes_few_times_its_size_in_memory(kind: str, sides: int) -> None:
+    """As lists of whole numbers polygons took ten to twenty-five times as much."""
+    count, one = 40_000, kind == "obj"
+    corners = " ".join(str(c + one) for c in range(sides))
+    face = f"f {corners}" if one else f"{sides} {corners}"
+    points = "\n".join(f"{'v ' * one}{x} {x * x} 1" for x in range(100))
+    file = f"{'' if one else f'OFF 100 {count} 0'}\n{points}\n{(face + chr(10)) * count}".encode()
+    tracemalloc.start()
+    try:
+        found = (obj if one else off).read(file, "a")
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert found.faces.shape == (count * (sides - 2), 3)
+    assert peak < 9 * len(file)  # of 400 kB; four corners become two triangles of three whole numbers, held twice
+
+
 def test_obj_and_off_of_points_alone_are_clouds() -> None:
     assert parse_cloud(b"v 1 2 3\n" * 20, "a.obj").points.shape == (20, 3)
     assert parse_cloud(b"OFF\n20 0 0\n" + b"1 2 3\n" * 20, "a.off").points.shape == (20, 3)
@@ -182,7 +202,7 @@ MESHES_BROKEN = {
     "no rows.off": (b"OFF\n0 0 0\n", "holds no points"),
     "none.off": (b"4 4 0\n0 0 0\n", "does not begin with OFF"),
     "word.obj": (b"v 0 0 0//\nv 1 0 0\n", "every vertex needs three numbers"),
-    "nothing.obj": (b"v \nv 1 0 0\n", "1 vertices hold nothing"),
+    "nothing.obj": (b"v \nv 1 0 0\n", "vertex 1 holds nothing; every vertex needs three numbers"),
     "zero.obj": (b"v 0 0 0\nf 0 1 1\n", "'f 0 1 1' is no face"),
     "beyond.obj": (b"v 0 0 0\nf 1 2 3\n", "names vertex 2, there are 1"),
     "none.obj": (b"o nothing\n", "holds no points"),

@@ -1,6 +1,6 @@
 """Polygons of mesh files as triangles."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,13 @@ import numpy.typing as npt
 from tiskel.arrays import Edges
 from tiskel.errors import TiskelError
 from tiskel.io.formats.base import NO_FACES
+
+BATCH = 5_000  #: polygons at a time: as lists of whole numbers they take many times what they do in a file
+
+
+def joined(batches: Iterable[Edges]) -> Edges:
+    """Return the triangles (m, 3) of batches of polygons as one array."""
+    return np.concatenate([NO_FACES, *batches])
 
 
 def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any], count: int, name: str) -> Edges:

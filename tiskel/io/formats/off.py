@@ -1,15 +1,17 @@
 """Meshes and clouds in OFF, read here: Open3D crashes or hangs on files whose header is wrong."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from itertools import islice
 
 import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Points
 from tiskel.errors import TiskelError
-from tiskel.io.formats.base import Format, Parsed, short
-from tiskel.io.formats.faces import fans
+from tiskel.io.formats.base import Format, Parsed, rows_of, short
+from tiskel.io.formats.faces import BATCH, fans, joined
 
 MARK = re.compile(r"(ST)?C?N?OFF")  #: texture, colours and normals may follow the coordinates of a vertex
 
@@ -29,42 +31,43 @@ def read(data: bytes, name: str) -> Parsed:
     TiskelError
         Where the file is no OFF, or rows and header do not agree.
     """
-    lines = [line.partition("#")[0].strip() for line in data.decode("latin-1").splitlines()]
-    rows = [line for line in lines if line]
-    mark = MARK.match(rows[0]) if rows else None
+    rows = rows_of(data)
+    first = next(rows, "")
+    mark = MARK.match(first)
     if mark is None:
         raise TiskelError(f"{name} is no OFF file: it does not begin with OFF; is its suffix right?")
-    rows[:1] = [rest] if (rest := rows[0][mark.end() :].strip()) else []
-    counts = re.fullmatch(r"(\d{1,18})\s+(\d{1,18})(\s+-?\d+)?", rows[0]) if rows else None
+    counts = re.fullmatch(r"(\d{1,18})\s+(\d{1,18})(\s+-?\d+)?", first[mark.end() :].strip() or next(rows, ""))
     if counts is None:
         raise TiskelError(f"{name}: no counts of vertices and faces after OFF; export it again")
     vertices, faces = int(counts[1]), int(counts[2])
-    if len(rows) - 1 != vertices + faces:
+    head = 1 if first[mark.end() :].strip() else 2  # rows of it
+    follow = sum(1 for _ in rows)
+    if follow != vertices + faces:
         raise TiskelError(
-            f"{name}: the header promises {vertices} vertices and {faces} faces, {len(rows) - 1} rows follow; "
-            "export it again"
+            f"{name}: the header promises {vertices} vertices and {faces} faces, {follow} rows follow; export it again"
         )
-    points = _points(rows[1 : 1 + vertices], name)
-    return Parsed(points, fans(_polygons(rows[1 + vertices :], name), vertices, name))
-
-
-def _points(rows: Sequence[str], name: str) -> Points:
-    if not rows:
+    if vertices == 0:
         raise TiskelError(f"{name} holds no points; check how it was made")
+    rows = islice(rows_of(data), head, None)
+    points = _points(islice(rows, vertices), name)
+    return Parsed(points, joined(fans(each, vertices, name) for each in _polygons(rows, name)))
+
+
+def _points(rows: Iterable[str], name: str) -> Points:
     try:
         return np.ascontiguousarray(np.loadtxt(rows, comments=None, ndmin=2)[:, :3])
     except ValueError as error:
         raise TiskelError(f"{name}: {short(str(error))}; every vertex needs the same numbers") from None
 
 
-def _polygons(rows: Sequence[str], name: str) -> Sequence[Sequence[int]] | npt.NDArray[np.int64]:
-    """Return the corners of all faces: as one array where all are triangles without colours, which takes a tenth."""
-    if all(row.startswith("3 ") and row.count(" ") == 3 for row in rows):
-        try:
-            return np.loadtxt(rows, np.int64, comments=None, ndmin=2)[:, 1:].reshape(-1, 3) if rows else []
-        except ValueError:
-            pass
-    return [_corners(row, name) for row in rows]
+def _polygons(rows: Iterator[str], name: str) -> Iterator[Sequence[Sequence[int]] | npt.NDArray[np.int64]]:
+    """Yield the corners of so many faces at a time, as one array where all are triangles without colours."""
+    while batch := list(islice(rows, BATCH)):
+        if all(row.startswith("3 ") and row.count(" ") == 3 for row in batch):
+            with suppress(ValueError):
+                yield np.loadtxt(batch, np.int64, comments=None, ndmin=2)[:, 1:]
+                continue
+        yield [_corners(row, name) for row in batch]
 
 
 def _corners(row: str, name: str) -> list[int]:
