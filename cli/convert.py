@@ -25,14 +25,16 @@ def convert(
 ) -> None:
     """Convert a cloud, a mesh or a skeleton to another format.
 
-    Clouds go to PLY, XYZ, PTS, CSV, TSV, TXT, NPY; skeletons, those of other programs too, to PLY, OBJ lines, SWC,
-    GraphML, JSON, VTP, DXF, .graph and CSV; any stage file also gives its input cloud back as XYZ, PTS, TXT or NPY:
+    Clouds go to PLY, XYZ, PTS, CSV, TSV, TXT, NPY; meshes to PLY, OBJ, STL, GLB, OFF, or sampled to clouds; skeletons,
+    those of other programs too, to PLY, OBJ lines, SWC, GraphML, JSON, VTP, DXF, .graph and CSV; any stage file also
+    gives its input cloud back as XYZ, PTS, TXT or NPY:
     `tiskel convert curve.ply curve.swc`
     """
     from tiskel.io.clouds import dump_cloud, parse_cloud
     from tiskel.io.curves import as_skeleton, holds_curve, parse_curve
     from tiskel.io.exports import EXPORTS, export_of
     from tiskel.io.formats import WRITTEN
+    from tiskel.io.mesh_file import MESHES, mesh_bytes, parse_mesh
     from tiskel.io.stages.skeleton import parse_skeleton
     from tiskel.io.stages.which import stage_of
     from tiskel.io.streams import read_bytes
@@ -46,6 +48,10 @@ def convert(
             skeleton = parse_skeleton(data, str(source)) if ours else as_skeleton(parse_curve(data, source))
             kind = export_of(target)
             stages.write(target, lambda: EXPORTS[kind](skeleton))
+            return
+        mesh = parse_mesh(data, source) if target.suffix.lower() in MESHES and sample == o.SAMPLE else None
+        if mesh is not None:
+            stages.write(target, lambda: mesh_bytes(mesh, target))
             return
         asked, classes = stages.columns_of(columns), stages.classes_of(classification)
         cloud = parse_cloud(data, source, mesh_samples=stages.sample_of(sample), seed=seed, columns=asked)

@@ -99,7 +99,7 @@ def read_anything(source: str | Path) -> Shown:
 
 def _measures(data: bytes, name: str) -> MeasureFile:
     vertex: Any = ply.parse(data, name)["vertex"].data
-    columns = {key: np.array(vertex[key], np.float64) for key in vertex.dtype.names if key not in "xyz"}
+    columns = {key: np.array(vertex[key], np.float64) for key in ply.own(vertex.dtype.names) if key not in "xyz"}
     return MeasureFile(name, ply.points_of(vertex), columns)
 
 

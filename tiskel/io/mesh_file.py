@@ -1,4 +1,4 @@
-"""Triangle meshes to files of other programs: PLY, OBJ, STL, GLB, as the suffix says."""
+"""Triangle meshes to files of other programs: PLY, OBJ, STL, GLB, OFF, as the suffix says; and from them."""
 
 import json
 import struct
@@ -7,9 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tiskel.errors import TiskelError
 from tiskel.io import ply
+from tiskel.io.formats import format_of
+from tiskel.io.limits import unpacked
 from tiskel.io.streams import STANDARD
 from tiskel.slicing.body_mesh import BodyMesh
 from tiskel.slicing.mesh import Mesh
@@ -25,7 +28,8 @@ def dump_mesh(mesh: Mesh, source: dict[str, str] | None = None) -> bytes:
     ----------
     mesh : Mesh
         Triangles, counter-clockwise seen from outside; their trust, where known, is a property of the vertices.
-        Of a whole body, vertices have nx, ny, nz, curvature_min and curvature_max (1 / length), too.
+        Of a whole body, vertices have nx, ny, nz, curvature_min and curvature_max (1 / length), too. All of it but
+        normals also under the names that CloudCompare and MeshLab know, see :func:`tiskel.io.ply.scalars`.
     source : dict, optional
         Name and SHA-256 of the input.
     """
@@ -40,11 +44,11 @@ def dump_mesh(mesh: Mesh, source: dict[str, str] | None = None) -> bytes:
 
 def _more(mesh: Mesh) -> dict[str, Any]:
     """Return what else is known about the vertices."""
-    trust = {} if mesh.trust is None else {"trust": mesh.trust}
+    trust: dict[str, npt.NDArray[Any]] = {} if mesh.trust is None else {"trust": mesh.trust}
     if not isinstance(mesh, BodyMesh):
-        return trust
-    bends = {"curvature_min": mesh.curvatures[:, 0], "curvature_max": mesh.curvatures[:, 1]}
-    return ply.xyz(mesh.normals, ("nx", "ny", "nz")) | bends | trust
+        return trust | ply.scalars(trust, "trust")
+    known: dict[str, npt.NDArray[Any]] = {"curvature_min": mesh.curvatures[:, 0], "curvature_max": mesh.curvatures[:, 1], **trust}
+    return ply.xyz(mesh.normals, ("nx", "ny", "nz")) | known | ply.scalars(known, "trust")
 
 
 def mesh_bytes(mesh: Mesh, target: str | Path, source: dict[str, str] | None = None) -> bytes:
@@ -89,6 +93,14 @@ def to_stl(mesh: Mesh) -> bytes:
     return f"tiskel {version()} mesh".encode().ljust(80) + struct.pack("<I", len(facets)) + facets.tobytes()
 
 
+def to_off(mesh: Mesh) -> bytes:
+    """Return OFF: vertices and triangles."""
+    rows = ["OFF", f"{len(mesh.vertices)} {len(mesh.triangles)} 0"]
+    rows += [f"{x!r} {y!r} {z!r}" for x, y, z in mesh.vertices.tolist()]
+    rows += [f"3 {a} {b} {c}" for a, b, c in mesh.triangles.tolist()]
+    return ("\n".join(rows) + "\n").encode()
+
+
 def to_glb(mesh: Mesh) -> bytes:
     """Return binary glTF 2.0: single precision about the middle of the mesh, which the node is moved to."""
     middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
@@ -117,4 +129,19 @@ def to_glb(mesh: Mesh) -> bytes:
     return bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(parts)) + parts)
 
 
-WRITERS: dict[str, Callable[[Mesh], bytes]] = {".obj": to_obj, ".stl": to_stl, ".glb": to_glb}
+WRITERS: dict[str, Callable[[Mesh], bytes]] = {".obj": to_obj, ".stl": to_stl, ".glb": to_glb, ".off": to_off}
+MESHES = (".ply", *WRITERS)  #: suffixes of files that meshes are written to
+
+
+def parse_mesh(data: bytes, source: str | Path) -> Mesh | None:
+    """Return the mesh in the bytes of a file, polygons as triangles; None where it has no faces.
+
+    Raises
+    ------
+    TiskelError
+        Where the file is damaged or of an unknown kind.
+    """
+    name = "stdin" if str(source) == STANDARD else Path(source).name
+    plain, inner = unpacked(data, name)
+    found = format_of(inner, plain, by_content=str(source) == STANDARD).read(plain, name)
+    return Mesh(found.points, found.faces) if len(found.faces) else None

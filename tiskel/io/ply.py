@@ -2,7 +2,7 @@
 
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -17,6 +17,7 @@ from tiskel.version import version
 
 Columns = Mapping[str, npt.NDArray[Any]]
 MAGIC = b"ply"
+SCALAR, QUALITY = "scalar_", "quality"  #: names of columns that CloudCompare and MeshLab show as colours
 HEADER_END, HEADER_REST = b"end_header", 12  #: the last line of a header, and its length with any line ending
 FORMAT = 2  #: of the stage files; 1 is still read
 SMALLEST_ROW = 1  # byte; no element of a binary file can hold more rows than the file has bytes
@@ -199,6 +200,25 @@ def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -
         start = table.view(np.uint8).reshape(len(table), -1)[:, kinds[0][1] : kinds[0][1] + 24]
         return np.ascontiguousarray(start).view(np.float64)
     return np.stack([np.asarray(table[name], np.float64) for name in names], axis=1).reshape(-1, 3)
+
+
+def scalars(columns: Columns, quality: str = "") -> dict[str, npt.NDArray[np.float32]]:
+    """Return columns by the names that others know: ``scalar_NAME`` for CloudCompare, ``quality`` for MeshLab.
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array
+        By their own names.
+    quality : str, optional
+        Which of them is the quality, if it is there.
+    """
+    known = {f"{SCALAR}{name}": np.asarray(column, np.float32) for name, column in columns.items()}
+    return known | ({QUALITY: np.asarray(columns[quality], np.float32)} if quality in columns else {})
+
+
+def own(names: Iterable[str]) -> list[str]:
+    """Return the names of columns without those that :func:`scalars` adds."""
+    return [name for name in names if name != QUALITY and not name.startswith(SCALAR)]
 
 
 def xyz(points: Points, names: Sequence[str] = ("x", "y", "z")) -> dict[str, Numbers]:

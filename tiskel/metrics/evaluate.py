@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Mask, Numbers, Points, PointsLike
-from tiskel.errors import TiskelError
 from tiskel.extras import there
 from tiskel.geometry.air import in_the_air
 from tiskel.geometry.clearance import CloudBody

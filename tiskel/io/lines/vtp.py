@@ -143,5 +143,9 @@ MEASURES = {  #: of branches, in cells
 
 
 def _array(name: str, kind: str, values: list[Any], width: int = 1) -> str:
-    said = " ".join("nan" if value is None else repr(value) for value in values)
-    return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width}" format="ascii">{said}</DataArray>'
+    head = f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width}" format='
+    if None not in values and np.isfinite(values).all():
+        return f'{head}"ascii">{" ".join(map(repr, values))}</DataArray>'
+    packed = np.array(values, "<" + KINDS[kind]).tobytes()  # in text VTK knows no NaN, and gives up the whole file
+    said = base64.b64encode(len(packed).to_bytes(4, "little") + packed).decode()
+    return f'{head}"binary">{said}</DataArray>'

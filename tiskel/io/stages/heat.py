@@ -14,17 +14,19 @@ NAMES = ("of_curve", "beta", "bounded", "inside", "centredness", "smoothness", "
 
 
 def dump_heat(quality: Quality) -> bytes:
-    """Return a PLY file that CloudCompare shows as scalar fields; NaN where a measure has no value.
+    """Return a PLY file that CloudCompare and MeshLab show in colours; NaN where a measure has no value.
 
     Its vertices are the skeletal points, then the samples and the vertices of the
     curve, in the input's units. Properties: of_curve (0 skeletal point, 1 sample
     of the curve, 2 vertex of the curve), beta, bounded, inside, centredness,
-    smoothness, in_air, medialness.
+    smoothness, in_air, medialness; each also as scalar_NAME for CloudCompare, and
+    beta as the quality of MeshLab.
     """
     parts = [_points(quality.points), *_curve(quality.curve)]
     places = np.concatenate([part[0] for part in parts])
     values = np.concatenate([part[1] for part in parts])
-    columns: dict[str, Any] = {**ply.xyz(places), **dict(zip(NAMES, values.T.astype(np.float32), strict=True))}
+    known = dict(zip(NAMES, values.T.astype(np.float32), strict=True))
+    columns: dict[str, Any] = {**ply.xyz(places), **known, **ply.scalars(known, "beta")}
     return ply.dump([ply.element("vertex", columns)], "metrics", {"params": ply.plain(quality.params)})
 
 

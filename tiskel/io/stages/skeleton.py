@@ -2,7 +2,8 @@
 
 Elements: ``vertex`` (x y z radius branch degree radius_source regime; branch is -1
 for a junction, which belongs to several; radius_source is a number of
-:class:`tiskel.RadiusSource`, regime of :class:`tiskel.Regime`) and ``edge``
+:class:`tiskel.RadiusSource`, regime of :class:`tiskel.Regime`; scalar_radius and quality are the radius by the names
+that CloudCompare and MeshLab know) and ``edge``
 (vertex1 vertex2); ``edge_source`` (bridged: 1 where an edge was laid over a gap, 0
 where it follows points; trimesh reads no edges of more than two properties);
 ``branch``, how many nodes each has, and ``branch_node``, these nodes one branch
@@ -38,7 +39,7 @@ STAGE = "skeleton"
 def dump_skeleton(s: Skeleton, source: dict[str, str] | None = None) -> bytes:
     """Return the bytes of a stage file, the same for the same skeleton; see :func:`tiskel.write_skeleton`."""
     vertex: dict[str, Any] = {**ply.xyz(s.nodes), "radius": s.radii, "branch": s.branch_of_node(), "degree": s.degrees}
-    vertex |= {"radius_source": s.radius_sources, "regime": s.regimes}
+    vertex |= {"radius_source": s.radius_sources, "regime": s.regimes, **ply.scalars({"radius": s.radii}, "radius")}
     contracted: dict[str, Any] = {**ply.xyz(s.contracted), **ply.xyz(s.origin, ORIGIN), "row": s.rows}
     contracted["node"] = s.node_of_point[s.rows]
     cloud: dict[str, Any] = {**ply.xyz(s.cloud), "row": s.input_rows, "node": s.node_of_point}
