@@ -47,7 +47,11 @@ def _more(mesh: Mesh) -> dict[str, Any]:
     trust: dict[str, npt.NDArray[Any]] = {} if mesh.trust is None else {"trust": mesh.trust}
     if not isinstance(mesh, BodyMesh):
         return trust | ply.scalars(trust, "trust")
-    known: dict[str, npt.NDArray[Any]] = {"curvature_min": mesh.curvatures[:, 0], "curvature_max": mesh.curvatures[:, 1], **trust}
+    known: dict[str, npt.NDArray[Any]] = {
+        "curvature_min": mesh.curvatures[:, 0],
+        "curvature_max": mesh.curvatures[:, 1],
+        **trust,
+    }
     return ply.xyz(mesh.normals, ("nx", "ny", "nz")) | known | ply.scalars(known, "trust")
 
 
