@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 TOOLS := $(VENV)-tools
 
-.PHONY: help demo test debug check format data dissertation dist audit sbom clean
+.PHONY: help demo test debug check format data docs dissertation dist audit sbom clean
 
 help:
 	@echo "make demo    skeleton of a sample cloud: files and a picture in out/demo"
@@ -15,6 +15,7 @@ help:
 	@echo "make check   lint, format and types"
 	@echo "make format  format the code"
 	@echo "make data    make the sample clouds in data/ anew"
+	@echo "make docs    the documentation in out/docs, to be read in a browser without a network"
 	@echo "make dissertation   docs/dissertation.md: every claim of the dissertation with its verdict; resumable"
 	@echo "make dist    source distribution and wheel in dist/; the wheel is the same bytes from the same commit"
 	@echo "make audit   known vulnerabilities of what is installed"
@@ -42,6 +43,10 @@ format: $(INSTALLED)
 
 data: $(INSTALLED)
 	data/make.sh $(BIN)/tiskel
+
+docs: $(INSTALLED)
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs out/docs
+	@echo "out/docs/index.html"
 
 dissertation: $(INSTALLED)
 	$(BIN)/python benchmarks/dissertation $(ARGS)

@@ -1,10 +1,5 @@
-"""The picture of docs/robust.md: method robust on a hand, step by step.
+"""The picture of docs/robust.md: method robust on a hand, step by step; docs/pictures.py writes it."""
 
-python docs/robust.py [FILE]     # docs/robust.png without
-"""
-
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +9,20 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MaxNLocator
 
-from tiskel import Contraction, CurveGraph, ShapeParams, contract, extract_skeleton, make_shape, shape_graph
-from tiskel.arrays import Numbers, Points
+from tiskel import (
+    Contraction,
+    CurveGraph,
+    LookParams,
+    ShapeParams,
+    contract,
+    extract_skeleton,
+    make_shape,
+    shape_graph,
+)  # fmt: skip
+from tiskel.arrays import Numbers
 from tiskel.methods.robust.sections import section_graph
-from tiskel.pictures.canvas import CURVE, INK, POINTS, broad_view, cloud_panel, new_figure, rendered
+from tiskel.pictures.canvas import Sight, cloud_panel, new_figure, rendered, sight_of
+from tiskel.pictures.style import CURVE, INK, POINTS
 
 SHAPE, NOISE, COUNT = "hand", 0.1, 3500
 CONES = "#f3cfc7"
@@ -49,16 +54,16 @@ def bins(count: int) -> ListedColormap:
     return ListedColormap(colours)
 
 
-def draw_curve(panel: Any, graph: CurveGraph, view: Points, size: float) -> None:
+def draw_curve(panel: Any, graph: CurveGraph, sight: Sight, size: float) -> None:
     """Draw nodes and edges."""
-    flat = graph.nodes @ view.T
+    flat = sight.flat(graph.nodes)
     panel.add_collection(LineCollection(list(flat[graph.edges]), colors=INK, linewidths=1.0, zorder=3))
     panel.scatter(*flat.T, s=size, c=CURVE, linewidths=0, zorder=4)
 
 
-def draw_cones(panel: Any, graph: CurveGraph, view: Points) -> None:
+def draw_cones(panel: Any, graph: CurveGraph, sight: Sight) -> None:
     """Draw the round cones of a curve as one shade: circles about the nodes and what lies between two of them."""
-    flat = graph.nodes @ view.T
+    flat = sight.flat(graph.nodes)
     shapes: list[Any] = [Circle(tuple(place), radius) for place, radius in zip(flat, graph.radii, strict=True)]
     shapes += [Polygon(outline(flat[edge], graph.radii[edge])) for edge in graph.edges]
     panel.add_collection(PatchCollection(shapes, facecolor=CONES, edgecolor="none", zorder=0))
@@ -70,22 +75,22 @@ def picture() -> bytes:
     c = contract(cloud)
     skeleton = extract_skeleton(c)
     assert c.sections is not None
-    view = broad_view(cloud)[::-1]
-    figure = new_figure(12.0, 4.1)
+    sight = sight_of(cloud, LookParams(up="z"))
+    figure = new_figure(12.0, 4.4)
     titles = (
-        f"1  {len(cloud)} points, noise {NOISE:.0%}",
-        "2  bins of geodesic distance",
-        "3  points on their axes",
-        "4  graph of the sections",
-        "5  round cones",
+        f"1: {len(cloud)} points, noise {NOISE:.0%}",
+        "2: bins of geodesic distance",
+        "3: points on their axes",
+        "4: graph of the sections",
+        "5: round cones",
     )
-    flat = cloud @ view.T
+    flat = sight.flat(cloud)
     low, high = flat.min(axis=0), flat.max(axis=0)
     panels = figure.subplots(1, 5)
     for panel, title in zip(panels, titles, strict=True):
         panel.set_title(title, fontsize=10, color=INK)
-        panel.set_frame_on(False)
-        cloud_panel(panel, cloud, view)
+        cloud_panel(panel, sight, small=True)
+        panel.set_axis_off()
         panel.set_xlim(low[0] - MARGIN, high[0] + MARGIN)
         panel.set_ylim(low[1] - 2 * MARGIN, high[1] + MARGIN)
         panel.set_aspect("equal", adjustable="box")
@@ -94,13 +99,8 @@ def picture() -> bytes:
     bar.ax.tick_params(labelsize=7)
     bar.locator = MaxNLocator(6, integer=True)
     panels[0].scatter(*flat.T, s=2, c=INK, linewidths=0)
-    panels[2].scatter(*(c.points @ view.T).T, s=2.5, c=POINTS, linewidths=0)
-    draw_curve(panels[3], sections_of(c), view, 9)
-    draw_cones(panels[4], skeleton, view)
-    draw_curve(panels[4], skeleton, view, 9)
+    panels[2].scatter(*sight.flat(c.points).T, s=2.5, c=POINTS, linewidths=0)
+    draw_curve(panels[3], sections_of(c), sight, 9)
+    draw_cones(panels[4], skeleton, sight)
+    draw_curve(panels[4], skeleton, sight, 9)
     return rendered(figure)
-
-
-if __name__ == "__main__":
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).with_suffix(".png")
-    target.write_bytes(picture())
