@@ -11,7 +11,9 @@ from tiskel.messages import Message
 from tiskel.metrics.tables import COLUMNS
 from tiskel.params import LookParams, RobustParams
 from tiskel.pictures.canvas import new_figure, rendered
+from tiskel.report import markup as m
 from tiskel.report.page import RunFacts, report
+from tiskel.report.settings import settings
 from tiskel.report.words import MEASURES
 
 NAME = 'a "<img src=x onerror=alert(1)>" & b.ply'
@@ -44,6 +46,35 @@ def test_everything_of_a_run_is_said(result: PipelineResult) -> None:
     assert [one for one in wanted if one not in words] == []
     assert result.stability is not None
     assert result.stability.reason in words
+
+
+def test_many_warnings_and_rows_do_not_fill_the_page(result: PipelineResult) -> None:
+    """A tree has fifty warnings of its surfaces and hundreds of branches: a few are seen at once, all are there."""
+    told = [("slice", tuple(Message(f"branch {i} is off", warning=True) for i in range(30)))]
+    page = report(result, RunFacts(name="b.ply", told=told))
+    assert page.count("is off</li>") == 30
+    shown, _, rest = page.partition("<summary>26 more warnings</summary>")
+    assert shown.count("is off</li>") == 4
+    assert rest
+    few, many = (m.table(("a",), [(i,) for i in range(count)]) for count in (5, 50))
+    assert ('class="wide long"' in many, 'class="wide long"' in few) == (True, False)
+    assert many.count("<tr>") == 51
+
+
+def test_a_setting_as_the_command_line_writes_it_is_the_default() -> None:
+    usual = PipelineParams().roll[0]
+    a, b, c, d, e = (float(f"{value:.10g}") for value in usual.start)
+    assert (a, b, c, d, e) != usual.start
+    written, other = (replace(usual, start=start) for start in ((a, b, c, d, e), (a, 1.5, c, d, 1.5)))
+    assert "Other than usual" not in settings(PipelineParams(roll=(written,)))
+    assert "Other than usual" in settings(PipelineParams(roll=(other,)))
+
+
+def test_steps_have_the_columns_of_their_method(result: PipelineResult) -> None:
+    words = words_of(report(result, RunFacts(name="b.ply")))
+    assert "ring ratio" in words
+    assert "explained score" not in words
+    assert "contraction weight" not in words
 
 
 def test_every_measure_has_words() -> None:

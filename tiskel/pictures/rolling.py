@@ -186,7 +186,7 @@ def _on_sphere(panel: Any, runs: Sequence[Trajectory]) -> None:
             shown = np.where(side[:, None], flat, np.nan)
             panel.plot(*shown.T, color=colour, linewidth=1.4, linestyle=style)
     panel.plot(np.cos(TURN), np.sin(TURN), color=INK, linewidth=0.8)
-    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_aspect("equal", adjustable="box")
     panel.set_title("contact on the sphere, in its radii; behind it dotted", fontsize=9)
     panel.tick_params(labelsize=7)
 

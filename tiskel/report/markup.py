@@ -5,6 +5,7 @@ import html
 from collections.abc import Iterable, Sequence
 
 FEW = 4  # lines that need no folding
+MANY = 25  # rows that need no box to scroll in; printed, all of them are there
 
 
 def text(value: object) -> str:
@@ -20,8 +21,10 @@ def number(value: object) -> str:
 def table(head: Sequence[str], rows: Iterable[Sequence[object]], kind: str = "") -> str:
     """Return a table; its cells are escaped."""
     top = "".join(f'<th scope="col">{text(cell)}</th>' for cell in head)
-    body = "".join("<tr>" + "".join(f"<td>{text(number(cell))}</td>" for cell in row) + "</tr>" for row in rows)
-    return f'<div class="wide"><table class="{kind}"><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
+    lines = ["<tr>" + "".join(f"<td>{text(number(cell))}</td>" for cell in row) + "</tr>" for row in rows]
+    box = "wide long" if len(lines) > MANY else "wide"
+    body = f"<thead><tr>{top}</tr></thead><tbody>{''.join(lines)}</tbody>"
+    return f'<div class="{box}" tabindex="0"><table class="{kind}">{body}</table></div>'
 
 
 def facts(pairs: Iterable[tuple[str, object]]) -> str:
@@ -52,9 +55,14 @@ def messages(lines: Iterable[tuple[str, str]]) -> str:
 
 
 def folded(lines: Sequence[tuple[str, str]]) -> str:
-    """Return lines as :func:`messages`, warnings first; many others can be opened."""
+    """Return lines as :func:`messages`, warnings first; what is more than a few of a kind can be opened."""
     warnings = [line for line in lines if line[0] == "warning"]
     others = [line for line in lines if line[0] != "warning"]
-    if len(others) <= FEW:
-        return messages([*warnings, *others])
-    return f"{messages(warnings)}<details><summary>{len(others)} lines</summary>{messages(others)}</details>"
+    return _opened(warnings, FEW, "more warnings") + _opened(others, FEW if len(others) <= FEW else 0, "lines")
+
+
+def _opened(lines: Sequence[tuple[str, str]], first: int, name: str) -> str:
+    """Return the first lines, and the others behind a summary that counts them."""
+    rest = lines[first:] if len(lines) > first + 1 else []
+    shown = messages(lines[: len(lines) - len(rest)])
+    return f"{shown}<details><summary>{len(rest)} {name}</summary>{messages(rest)}</details>" if rest else shown

@@ -83,4 +83,5 @@ def steps(result: PipelineResult) -> list[str]:
         stable = result.stability.stable
         words = f"{'Stable' if stable else 'Not stable'}: {result.stability.reason}"
         verdict = m.messages([("good" if stable else "warning", words)])
-    return [verdict, m.table(head, steps, "numbers")]
+    told = [i for i in range(len(head)) if any(row[i] for row in steps)]  # a method has some of them only
+    return [verdict, m.table([head[i] for i in told], [[row[i] for i in told] for row in steps], "numbers")]

@@ -1,10 +1,13 @@
 """The settings of a run, those that are not the defaults first."""
 
 from dataclasses import fields, is_dataclass
+from math import isclose
 from typing import Any
 
 from tiskel.params import PipelineParams
 from tiskel.report import markup as m
+
+AS_WRITTEN = 1e-9  # relative; what ten digits of a number leave open
 
 
 def settings(params: PipelineParams) -> str:
@@ -27,6 +30,20 @@ def _differing(stage: str, chosen: Any, usual: Any) -> list[tuple[str, str, str,
     if not is_dataclass(chosen):
         return [(stage, "", str(chosen), chosen != usual)]
     return [
-        (stage, one.name, str(getattr(chosen, one.name)), getattr(chosen, one.name) != getattr(usual, one.name, None))
+        (
+            stage,
+            one.name,
+            str(getattr(chosen, one.name)),
+            not _same(getattr(chosen, one.name), getattr(usual, one.name, None)),
+        )
         for one in fields(chosen)
     ]
+
+
+def _same(chosen: Any, usual: Any) -> bool:
+    """Tell whether a setting is the default, as it is written on a command line: with ten digits."""
+    if isinstance(chosen, float) and isinstance(usual, float):
+        return isclose(chosen, usual, rel_tol=AS_WRITTEN)
+    if isinstance(chosen, tuple) and isinstance(usual, tuple) and len(chosen) == len(usual):
+        return all(map(_same, chosen, usual))
+    return bool(chosen == usual)
