@@ -26,6 +26,7 @@ help:
 
 demo: $(RUNS)
 	$(BIN)/tiskel run data/banana.ply -o out/demo
+	@echo "open out/demo/report.html in a browser"
 
 test: $(INSTALLED)
 	$(BIN)/pytest -q
@@ -76,9 +77,9 @@ $(TOOLS)/.installed:
 $(RUNS): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
+	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
 	touch $@
 
 $(INSTALLED): $(RUNS)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
 	touch $@

@@ -13,11 +13,13 @@ from tiskel import __version__
 project, author, copyright = "tiskel", "the tiskel developers", "the tiskel developers, MIT licence"
 release = version = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "command_reference", "public_names"]
-exclude_patterns = ["extensions", "notebooks"]
+exclude_patterns = ["extensions", "notebooks", "static"]
 html_theme = "furo"
 html_title = f"tiskel {release}"
 html_math_renderer = "mathml"  # browsers draw it themselves: no script and no font is fetched
 html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["math.css"]
 html_show_sphinx = False
 html_theme_options = {"navigation_with_keys": True}
 myst_enable_extensions = ["dollarmath"]

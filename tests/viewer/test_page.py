@@ -171,6 +171,17 @@ def test_a_report_holds_a_viewer_and_names_are_only_names(tab: Browser, pages: P
     assert quiet(tab), (tab.errors, tab.requests)
 
 
+def test_a_report_is_read_on_a_phone_and_its_tables_have_room(tab: Browser, pages: Path) -> None:
+    address = (pages / "report.html").as_uri()
+    tab.open(address)
+    assert tab.value("document.querySelector('.telling td:last-child').clientWidth") > 250
+    tab.open(address, width=390, height=800, phone=True)
+    assert tab.value("document.documentElement.scrollWidth") <= 390
+    rows = tab.value("[...document.querySelectorAll('.measures tbody tr')].map(row => row.clientHeight)")
+    assert 0 < max(rows) < 120
+    assert not tab.errors
+
+
 def test_without_webgl_there_is_a_still_picture(pages: Path) -> None:
     with browser(*NO_WEBGL) as tab:
         tab.open((pages / "view.html").as_uri())

@@ -59,7 +59,7 @@ def surfaces(result: PipelineResult, unit: str) -> list[str]:
     ]  # fmt: skip
     rows += [(branch, "", "", "", "", "", "", "no surface", why) for branch, why in result.surfaces.rejected.items()]
     covered = [("plain", one.text) for one in messages.of_coverage(result.surfaces)]
-    return [m.messages(covered), m.table(head, rows, "numbers")]
+    return [m.messages(covered), m.table(head, rows, "numbers telling")]
 
 
 def runs(result: PipelineResult, unit: str) -> list[str]:
