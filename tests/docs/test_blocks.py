@@ -64,8 +64,7 @@ def _cloud(shape: str, name: str, count: int = 800, **settings: object) -> Calla
 
 def _scans(store: Path) -> None:
     (store / "scans").mkdir()
-    for seed in (1, 2):
-        _cloud("capsule", f"scans/{seed}.ply", 300, seed=seed)(store)
+    _cloud("capsule", "scans/a.ply", 300)(store)
 
 
 def _stages(store: Path) -> None:
@@ -104,6 +103,7 @@ MAKERS: dict[str, Callable[[Path], None]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", RUNNING, ids=lambda page: page.stem)
 def test_the_blocks_of_a_page_run(page: Path, program: Path, store: Path, tmp_path: Path,
                                   monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip

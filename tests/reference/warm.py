@@ -18,7 +18,7 @@ HEAVY = (
     "numpy", "scipy.sparse.linalg", "scipy.spatial", "scipy.optimize", "scipy.integrate", "scipy.interpolate",
     "matplotlib.figure", "matplotlib.backends.backend_agg", "PIL.Image", "plyfile", "networkx", "rich.console",
     "tiskel.pipeline", "tiskel.viewer.show", "tiskel.report.page", "tiskel.metrics.evaluate", "tiskel.rolling.plan",
-    "tiskel.io.anything", "tiskel.cli.app",
+    "tiskel.io.anything", "tiskel.cli.app", "ripser", "taichi", "tiskel.kernels.rings", "tiskel.kernels.cones",
 )  # fmt: skip
 CALL = """#!{python} -ISE
 import json, os, socket, sys
