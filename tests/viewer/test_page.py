@@ -178,7 +178,7 @@ def test_a_report_is_read_on_a_phone_and_its_tables_have_room(tab: Browser, page
     tab.open(address, width=390, height=800, phone=True)
     assert tab.value("document.documentElement.scrollWidth") <= 390
     rows = tab.value("[...document.querySelectorAll('.measures tbody tr')].map(row => row.clientHeight)")
-    assert 0 < max(rows) < 120
+    assert 0 < np.median(rows) < 120  # a column of single words would make them 150 and more
     assert not tab.errors
 
 
