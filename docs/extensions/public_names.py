@@ -17,6 +17,7 @@ GROUPS = {
     "io": "Files",
     "preprocess": "Files",
     "gallery": "Shapes whose skeleton is known",
+    "one_call": "Everything at once",
     "pipeline": "Everything at once",
     "progress": "Everything at once",
     "errors": "Everything at once",
