@@ -1,4 +1,17 @@
-"""The stage ``slice``: a skeleton and its cloud in, a Fourier surface for every branch out."""
+"""The stage ``slice``: a skeleton and its cloud in, a Fourier surface for every branch out.
+
+Departures from print (Wen et al. 2025), which has the skeleton curve as a Fourier series over one of the Cartesian
+coordinates, and keeps it where the contraction left it:
+
+- The curve is a smoothing spline over arc length (:mod:`tiskel.slicing.axis`): a U-shaped one has no coordinate to go
+  over.
+- It moves to the middles of its sections before the surface is fitted (``recentre``).
+- A slab is at least 1.5 spacings of the points thick, whatever the interval between slices: thinner ones are empty.
+- Slices at the ends that have no section are trimmed, and told; between fitted ones they are bridged.
+- All sections share one order, raised only while the cross-validated error falls; print's rule is
+  ``order_rule="published"``, each section its own until its RMS error is below 1e-3 in the unit of length.
+- Coefficients are joined along the curve with continuous second derivatives, where print leaves that open.
+"""
 
 from collections import Counter
 from dataclasses import replace

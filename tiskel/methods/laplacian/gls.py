@@ -4,9 +4,9 @@ Choices where print is silent or the toolbox differs (its own is :mod:`tiskel.me
 
 - V1 has W_L squared, which print lacks (Eq 3.10): W_L grows by s_L a step, and V1 is what it weighs. V2 has w_h(0),
   as in the derivation; with w_h(k) the shrinkage would count twice.
-- At least ``min_steps`` steps are kept, as in the toolbox: by the printed rule alone (Eq 3.15) most clouds stop after
-  one. The step that meets the rule is discarded.
-
+- At least ``min_steps`` steps are kept, as in the toolbox, which print does not name: by its rule alone (Eq 3.15)
+  about half of the gallery stops after one, and with the toolbox's score, that of the cloud before the step, all of it.
+  The step that meets the rule is discarded.
 - Ring sizes are always those of the rings as they are, merged ones included.
 - e(k) is the score of the contracted cloud before its removal; the change is divided by the share of points kept.
 - The mean ring length behind the first weight counts every member once.
