@@ -127,21 +127,16 @@ def tell_steps(c: "Contraction") -> None:
 
 
 def _steps_table(c: "Contraction"):  # type: ignore[no-untyped-def]
-    parts = list(c.steps[0].seconds)
-    columns = ["step", "W_L", "ring ratio", "score", "change", "points", *(f"{part} s" for part in parts)]
-    rows = [
-        [
-            str(number),
-            f"{step.contraction_weight:.4g}",
-            f"{step.ring_ratio:.4f}",
-            "" if step.score is None else f"{step.score:.5f}",
-            "" if step.score_change is None else f"{step.score_change:.5f}",
-            str(step.points),
-            *(f"{step.seconds[part]:.3f}" for part in parts),
-        ]
-        for number, step in enumerate(c.steps, 1)
-    ]
-    return console.table("steps", columns, rows)
+    columns = {
+        "step": [str(number) for number in range(1, len(c.steps) + 1)],
+        "W_L": [f"{step.contraction_weight:.4g}" if step.contraction_weight else "" for step in c.steps],
+        "ring ratio": [f"{step.ring_ratio:.4f}" for step in c.steps],
+        "score": ["" if step.score is None else f"{step.score:.5f}" for step in c.steps],
+        "change": ["" if step.score_change is None else f"{step.score_change:.5f}" for step in c.steps],
+        "points": [str(step.points) for step in c.steps],
+    } | {f"{part} s": [f"{step.seconds[part]:.3f}" for step in c.steps] for part in c.steps[0].seconds}
+    columns = {name: cells for name, cells in columns.items() if any(cells)}  # robust has no weights and no score
+    return console.table("steps", list(columns), [list(row) for row in zip(*columns.values(), strict=True)])
 
 
 def output_path(output: Path | None, source: Path, ending: str, also: tuple[str, ...] = ()) -> Path:

@@ -89,6 +89,13 @@ def test_contract_options_reach_the_library(tiskel: Runner, cloud: Path, tmp_pat
     assert b"sampling took away 400 points" in done.stderr
     assert b"ring ratio" in done.stderr
     assert b"neighbours and rings:" in done.stderr
+    assert b"W_L" in done.stderr
+
+
+def test_steps_of_fronts_are_told_without_weights_that_they_do_not_have(tiskel: Runner, cloud: Path) -> None:
+    done = tiskel("contract", cloud.name, "--sample", 500, "--verbose", "-o", "c.ply")
+    assert b"ring ratio" in done.stderr
+    assert b"W_L" not in done.stderr
 
 
 def test_run_writes_every_file(tiskel: Runner, cloud: Path, tmp_path: Path) -> None:

@@ -46,6 +46,8 @@ def test_everything_of_a_run_is_said(result: PipelineResult) -> None:
     assert [one for one in wanted if one not in words] == []
     assert result.stability is not None
     assert result.stability.reason in words
+    assert "ring ratio" in words
+    assert "contraction weight" not in words  # fronts have none
 
 
 def test_many_warnings_and_rows_do_not_fill_the_page(result: PipelineResult) -> None:

@@ -74,14 +74,16 @@ def runs(result: PipelineResult, unit: str) -> list[str]:
 
 def steps(result: PipelineResult) -> list[str]:
     """Return the steps of the contraction, and whether it was stable."""
-    head = ("step", "contraction weight", "ring ratio", "explained score", "points")
-    steps = [
-        (i, t.contraction_weight, t.ring_ratio, t.score, t.points) for i, t in enumerate(result.contraction.steps, 1)
-    ]
+    steps = result.contraction.steps
+    columns = {
+        "step": range(1, len(steps) + 1), "contraction weight": [step.contraction_weight or None for step in steps],
+        "ring ratio": [step.ring_ratio for step in steps], "explained score": [step.score for step in steps],
+        "points": [step.points for step in steps],
+    }  # fmt: skip
+    columns = {name: cells for name, cells in columns.items() if any(cell is not None for cell in cells)}
     verdict = ""
     if result.stability is not None:
         stable = result.stability.stable
         words = f"{'Stable' if stable else 'Not stable'}: {result.stability.reason}"
         verdict = m.messages([("good" if stable else "warning", words)])
-    told = [i for i in range(len(head)) if any(row[i] for row in steps)]  # a method has some of them only
-    return [verdict, m.table([head[i] for i in told], [[row[i] for i in told] for row in steps], "numbers")]
+    return [verdict, m.table(list(columns), list(zip(*columns.values(), strict=True)), "numbers")]
