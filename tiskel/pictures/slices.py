@@ -20,7 +20,7 @@ WIDTH, WIDE, HEIGHT, HEAD = 15.0, 4.4, 3.0, 0.9  # inches: all, a panel of the b
 TURN = np.linspace(0, 2 * np.pi, 121)
 RINGS, LINES = 40, 12  # drawn around and along
 LEGEND = (("slice", POINTS, "-"), ("slice, bridged", INK, ":"), ("curve, series", CURVE, "-"), ("points", POINTS, "o"))
-TITLE = 56  # letters in a line over a panel
+TITLE, NARROW = 56, 40  # letters in a line over a panel, wide and narrow
 MOST = 6  # surfaces that get a row of their own
 SMALL = 0.6  # of the body's diagonal: a surface below is drawn close up, with the whole body beside it
 ROOM = 0.12  # of its diagonal, about a surface that is drawn close up
@@ -113,11 +113,13 @@ def _section(polar: Any, flat: Any, s: FittedSurface, sight: Sight) -> None:
     rows = s.rows[np.abs(_places(s) - section.v) < 0.5 * V_STOP / len(s.sections)]
     ring = around(s.cloud, rows, s.tube.axis, s.tube.field, np.full(len(rows), section.v))
     r = s.tube.at(TURN, np.full(len(TURN), section.v))[1].R
+    off = float(np.sqrt(np.mean((ring.r - s.tube.at(ring.u, ring.v)[1].R) ** 2)) / r.mean())
     polar.plot(ring.u, ring.r, ".", color=POINTS, markersize=3)
     polar.plot(TURN, r, color=CURVE, linewidth=1.2)
     polar.tick_params(labelsize=6)
     polar.yaxis.set_major_locator(MaxNLocator(GRIDS))
-    polar.set_title(f"section at v = {section.v:.2f}: order {s.order}, error {section.error:.2%}", fontsize=8)
+    told = f"section at v = {section.v:.2f} of the joined surface: order {s.order}, points off by {off:.2%} of R"
+    polar.set_title(fill(told, NARROW), fontsize=8)
     flat.plot(np.mod(ring.u, 2 * np.pi), ring.r, ".", color=POINTS, markersize=3)
     flat.plot(TURN, r, color=CURVE, linewidth=1.2)
     flat.set_xlabel("u, radians", fontsize=7)
