@@ -69,6 +69,7 @@ def slice_command(
     branch: so.Branch = so.SURFACE.branch,
     m: so.FrameField = so.M,
     order_rule: so.OrderRuleName = so.SURFACE.order_rule,
+    orders: so.Orders = so.ORDERS,
     no_recentre: so.NoRecentre = not so.SURFACE.recentre,
     no_body: NoBody = False,
     mesh: MeshFile = None,
@@ -86,7 +87,7 @@ def slice_command(
     """
     from tiskel.io.mesh_file import mesh_kind
 
-    params = so.surface_params(branch, interval, m, order_rule, no_recentre)
+    params = so.surface_params(branch, interval, m, order_rule, orders, no_recentre)
     target = stages.output_path(output, source, "surface.json")
     stages.check_targets(mesh, table, plot)
     if mesh is not None:

@@ -31,6 +31,7 @@ def joined(values: tuple[float, ...] | str) -> str:
     return values if isinstance(values, str) else ",".join(f"{value:.10g}" for value in values)
 
 
+ORDERS = joined((SURFACE.least_order, SURFACE.most_order))
 M, OMEGA, VELOCITY, START = (joined(values) for values in (SURFACE.m, ROLL.omega, ROLL.velocity, ROLL.start))
 
 Branch = Annotated[
@@ -63,6 +64,12 @@ OrderRuleName = Annotated[
         "--order-rule",
         help="How the order of the Fourier series is chosen.",
         rich_help_panel="Method",
+    ),
+]
+Orders = Annotated[
+    str,
+    typer.Option(
+        "--orders", metavar="LOW,HIGH", help="Least and most order of the Fourier series.", rich_help_panel="Method"
     ),
 ]
 NoRecentre = Annotated[
@@ -166,10 +173,14 @@ Animate = Annotated[
 ]
 
 
-def surface_params(branch: str, interval: float, m: str, order_rule: OrderRule, no_recentre: bool) -> SurfaceParams:
+def surface_params(
+    branch: str, interval: float, m: str, order_rule: OrderRule, orders: str, no_recentre: bool
+) -> SurfaceParams:
     """Return the settings of slice."""
+    least, most = (round(order) for order in numbers_of("--orders", orders, 2))
     return SurfaceParams(
-        branch=branch, interval=interval, m=_direction(m), order_rule=order_rule, recentre=not no_recentre
+        branch=branch, interval=interval, m=_direction(m), order_rule=order_rule, least_order=least, most_order=most,
+        recentre=not no_recentre,
     )  # fmt: skip
 
 

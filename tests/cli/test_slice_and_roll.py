@@ -115,11 +115,12 @@ def test_the_same_bytes_on_one_thread_and_two(tiskel: Runner, stage: bytes) -> N
 
 def test_options_reach_the_library(tiskel: Runner, skeleton: Path, tmp_path: Path) -> None:
     words = ("--branch", "longest", "--interval", 0.04, "--m", "1,0,2", "--order-rule", "published", "--no-recentre")
-    assert tiskel("slice", skeleton.name, "-o", "f.json", *words).returncode == 0
+    assert tiskel("slice", skeleton.name, "-o", "f.json", *words, "--orders", "2,6").returncode == 0
     document = json.loads((tmp_path / "f.json").read_bytes())
     params = document["params"]
     assert (params["branch"], params["interval"], params["m"]) == ("longest", 0.04, [1, 0, 2])
     assert (params["order_rule"], params["recentre"]) == ("published", False)
+    assert (params["least_order"], params["most_order"]) == (2, 6)
     assert len(document["surfaces"][0]["sections"]) < 30
     more = ("--side", "inside", "--radius", 0.05, "--velocity", "0.01,0,0", "--twist", "sphere")
     start = ("--start", "0,pi/3,0,0,-pi")
