@@ -3,24 +3,28 @@
     make dissertation                                   # or: python benchmarks/dissertation
     python benchmarks/dissertation --only "Fig 3.5"     # one row; --chapter 3 one chapter
     python benchmarks/dissertation --data FOLDER        # scans in place of generated clouds, under the published names
-    python benchmarks/dissertation --clouds 1024:216 4096:216 16384:216
+    python benchmarks/dissertation --clouds 1024:24     # fewer of them
     python benchmarks/dissertation --quick --out DIR    # does it run?
 
 Writes docs/dissertation.md and the figures in docs/dissertation. Raw results are kept in out/dissertation, by settings
-and the library's sources: what was interrupted goes on, what did not change is not run again.
+and by the sources that make them: what was interrupted goes on, what did not change is not run again. Two processes of
+one thread each make them (--processes).
 """
 
-import datetime
-import platform
+import argparse
+import os
 import sys
 import time
-from dataclasses import replace
-from importlib.metadata import version
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import contraction
 import measures
 import rolling
-from core import QUICK, UNTESTED, Bench, Found, Row, Sizes, arguments, page, remember, remembered
+from core import QUICK, UNTESTED, Bench, Found, Row, Sizes
+from kept import ROOT, Failed, Job, Store, Wanted
+from page import Spent, page
 
 from tiskel import TiskelError
 
@@ -29,73 +33,95 @@ CHAPTERS = {
     "Chapter 4: measures": measures.ROWS,
     "Chapter 5: rolling contact": rolling.ROWS,
 }
-
 NOT_RUN = Found("", UNTESTED, "this row was not run when the page was made; --only runs it")
 
 
 def main() -> None:
-    """Run the rows that were asked for; write the page with them and with those of earlier runs."""
+    """Make what the rows asked for stand on; write the page with them and with those whose results are there."""
     chosen = arguments()
-    sizes = QUICK if chosen.quick else Sizes()
-    if chosen.clouds:
-        pairs = (pair.split(":") for pair in chosen.clouds)
-        sizes = replace(sizes, clouds={int(points): int(count) for points, count in pairs})
-    if chosen.shapes:
-        sizes = replace(sizes, shapes=chosen.shapes)
-    if chosen.density:
-        sizes = replace(sizes, density=tuple(chosen.density))
-    bench = Bench(sizes, chosen.out / "dissertation", chosen.kept, chosen.reference, chosen.data, chosen.stale)
+    bench = Bench(sizes(chosen), chosen.out / "dissertation", Store(chosen.kept), chosen.reference, chosen.data)
     rows = [(chapter, row) for chapter, some in CHAPTERS.items() for row in some]
     asked = [
         row for chapter, row in rows
         if (chosen.chapter is None or f"Chapter {chosen.chapter}:" in chapter)
-        and (chosen.only is None or chosen.only.lower() in key(row).lower())
+        and (chosen.only is None or chosen.only.lower() in row.key.lower())
     ]  # fmt: skip
-    found = remembered(bench)
-    for number, row in enumerate(asked, 1):
-        print(f"[{number}/{len(asked)}] {key(row)}", file=sys.stderr, flush=True)
-        found[key(row)] = settled(bench, row)
-        remember(bench, found)
-        print(f"{row.number} | {found[key(row)].ours} | {found[key(row)].verdict}", flush=True)
+    start, desk = time.perf_counter(), Desk(bench)
+    while wanted := [job for chapter, row in rows if row in asked for job in desk.lacking(chapter, row)]:
+        print(f"{len(wanted)} raw results are to be made", file=sys.stderr, flush=True)
+        bench.store.make(wanted, chosen.processes)
+    for chapter, row in rows:
+        desk.lacking(chapter, row)
+    print(f"{time.perf_counter() - start:.0f} s in all", file=sys.stderr)
     chosen.out.mkdir(parents=True, exist_ok=True)
-    every = [(chapter, row, found.get(key(row), NOT_RUN)) for chapter, row in rows]
-    (chosen.out / "dissertation.md").write_text(page(every, words(bench)))
+    every = [(chapter, row, desk.found.get(row.key, NOT_RUN)) for chapter, row in rows]
+    (chosen.out / "dissertation.md").write_text(page(every, bench, desk.spent))
 
 
-def key(row: Row) -> str:
-    return f"{row.number}: {row.claim}"
+@dataclass
+class Desk:
+    """Rows that are settled, and by chapter what their raw results took."""
+
+    bench: Bench
+    found: dict[str, Found] = field(default_factory=dict)
+    spent: Spent = field(default_factory=dict)
+    counted: set[str] = field(default_factory=set)
+
+    def lacking(self, chapter: str, row: Row) -> Sequence[Job]:
+        """Settle a row, or return what has to be made before."""
+        if row.key in self.found:
+            return ()
+        try:
+            found = row.find(self.bench)
+        except Wanted as wanted:
+            return wanted.jobs
+        except (Failed, TiskelError) as error:
+            found = Found("", UNTESTED, f"a run ended with an error: {error}")
+        self.found[row.key] = found
+        print(f"{row.number} | {found.ours} | {found.verdict}", flush=True)
+        self._count(chapter)
+        return ()
+
+    def _count(self, chapter: str) -> None:
+        new = {name: took for name, took in self.bench.store.used.items() if name not in self.counted}
+        self.counted |= set(new)
+        busy, elapsed = self.spent.get(chapter, (0.0, 0.0))
+        self.spent[chapter] = (
+            busy + sum(took["processor"] for took in new.values()),
+            elapsed + sum(took["elapsed"] for took in new.values()),
+        )  # fmt: skip
 
 
-def settled(bench: Bench, row: Row) -> Found:
-    start = time.perf_counter()
-    try:
-        return row.find(bench)
-    except TiskelError as error:
-        return Found("", UNTESTED, f"a run ended with an error: {error}")
-    finally:
-        print(f"    {time.perf_counter() - start:.1f} s", file=sys.stderr, flush=True)
+def sizes(chosen: argparse.Namespace) -> Sizes:
+    """Return how much is run."""
+    found = QUICK if chosen.quick else Sizes()
+    if chosen.clouds:
+        pairs = (pair.split(":") for pair in chosen.clouds)
+        found = replace(found, clouds={int(points): int(count) for points, count in pairs})
+    if chosen.shapes:
+        found = replace(found, shapes=chosen.shapes)
+    return replace(found, density=tuple(chosen.density)) if chosen.density else found
 
 
-def words(bench: Bench) -> str:
-    """Return what stands above the table: what it is, what made it, and how much was run."""
-    clouds = ", ".join(f"{count} clouds of {points} points" for points, count in bench.sizes.clouds.items())
-    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "taichi"))
-    stale = " Raw results of earlier versions of the library count, too (--stale)." if bench.stale else ""
-    source = "scans of --data" if bench.data else "the gallery's shapes, turned, with random proportions"
-    return "\n".join([
-        "Every numbered algorithm, equation, definition, figure and table of chapters 3 to 5 that a number can settle, "
-        "and claims of the text, with the value that is published and the one found here. *met*: the value, within the "
-        "tolerance that the row names, or 10 %; *met in kind*: the same tendency or order; *contradicted*: another, "
-        "and why; *not testable*: what is missing. Things whose number is not known here are named without one.",
-        "",
-        "`make dissertation` writes this page; `python benchmarks/dissertation --only \"Fig 3.5\"` makes one row; "
-        "`--data FOLDER` takes the scans of the original experiments, `--clouds 1024:216 4096:216 16384:216` their "
-        "number. Figures are in the published form.",
-        "",
-        f"Made of {source}: {clouds}; measures on {bench.sizes.shapes} shapes of {bench.sizes.points} points; density "
-        f"up to {max(bench.sizes.density)}. {datetime.date.today()}, Python {platform.python_version()}, {packages}, "
-        f"{platform.machine()}; times hang on the machine, and are compared with one another only.{stale}",
-    ])  # fmt: skip
+def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
+    reference = os.environ.get("TISKEL_REFERENCE", ROOT / ".." / "shared" / "reference")
+    parser = argparse.ArgumentParser(
+        prog="benchmarks/dissertation", description="See benchmarks/dissertation/__main__.py"
+    )
+    parser.add_argument("--chapter", type=int, choices=(3, 4, 5))
+    parser.add_argument("--only", help="rows whose number or claim contains this")
+    parser.add_argument(
+        "--data", type=Path, help="folder of scans, in place of generated clouds, under published names"
+    )
+    parser.add_argument("--quick", action="store_true", help="few and small clouds: does it run?")
+    parser.add_argument("--clouds", nargs="+", metavar="POINTS:COUNT", help="by default 1024:216 4096:216 16384:216")
+    parser.add_argument("--shapes", type=int, help="shapes with a true skeleton, for the measures")
+    parser.add_argument("--density", type=int, nargs="+", metavar="POINTS", help="of the study of density")
+    parser.add_argument("--processes", type=int, default=2, help="that make raw results, of one thread each")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of dissertation.md and its figures")
+    parser.add_argument("--kept", type=Path, default=ROOT / "out" / "dissertation", help="folder of raw results")
+    parser.add_argument("--reference", type=Path, default=Path(reference))
+    return parser.parse_args(words)
 
 
 if __name__ == "__main__":

@@ -1,20 +1,13 @@
-"""Rows of the table, raw results that are kept between runs, and figures: what the chapters share."""
+"""Rows of the table and what they have at hand: clouds, raw results, a place for figures, and rules of judgement."""
 
-import argparse
-import ast
-import hashlib
-import inspect
 import io
-import json
-import os
-import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field
-from functools import cached_property
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from kept import Json, Store, Work
 from PIL import Image
 from scipy.stats import spearmanr
 
@@ -23,13 +16,11 @@ from tiskel.arrays import Numbers, Points
 from tiskel.pictures.canvas import rendered
 from tiskel.pictures.style import CLOUD
 
-ROOT = Path(__file__).parents[2]
 MET, KIND, AGAINST, UNTESTED = "met", "met in kind", "contradicted", "not testable"
 COLOURS = 64  # of a figure
 SUFFIXES = (".ply", ".xyz", ".txt", ".csv", ".npy", ".pcd", ".off", ".obj", ".stl")
 SHOWN = 10_000  # points of a cloud in a picture
 RESAMPLES = 1000  # of a bootstrap
-Json = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -52,20 +43,25 @@ class Row:
     find: Callable[["Bench"], Found]
     command: str = ""  #: of tiskel, where one alone does it; benchmarks/dissertation --only ROW always does
 
+    @property
+    def key(self) -> str:
+        return f"{self.number}: {self.claim}"
+
 
 @dataclass(frozen=True)
 class Sizes:
     """How much is run: clouds by their number of points, shapes, and what the studies go up to."""
 
-    clouds: dict[int, int] = field(default_factory=lambda: {1024: 24, 4096: 24, 16384: 6})
+    clouds: dict[int, int] = field(default_factory=lambda: {1024: 216, 4096: 216, 16384: 216})
     shapes: int = 25  #: with a true skeleton, for the measures
     points: int = 2048  #: of each of these
     noisy: int = 8  #: shapes of the study of noise
+    stopped: int = 25  #: shapes of the study of the stopping rule
     density: tuple[int, ...] = (512, 2048, 8192, 32768, 262144)
-    beta: int = 250  #: skeletal points of the apple tree
+    beta: int = 250  #: skeletal points of the apple tree in a draw
 
 
-QUICK = Sizes(clouds={512: 2}, shapes=3, points=512, noisy=2, density=(512, 2048), beta=20)
+QUICK = Sizes(clouds={512: 2}, shapes=3, points=512, noisy=2, stopped=2, density=(512, 2048), beta=20)
 
 
 @dataclass(frozen=True)
@@ -74,46 +70,37 @@ class Bench:
 
     sizes: Sizes
     out: Path
-    kept: Path
+    store: Store
     reference: Path
     data: Path | None = None
-    stale: bool = False  #: raw results of other versions of the library count, too
 
-    @cached_property
-    def version(self) -> str:
-        """A hash of the library's sources."""
-        return hashed(*(path.read_text() for path in sources()))
+    def raw(self, work: Work, **settings: Any) -> Json:
+        """Return what a work gives for these settings; raise Wanted where it is not there yet."""
+        return self.store.many(work, [settings])[0]
 
-    def raw(self, work: Callable[..., Json], **settings: Any) -> Json:
-        """Return what a function gives for these settings, from the folder of raw results where it is there."""
-        key = hashed(json.dumps(settings, sort_keys=True, default=str))
-        version = hashed(ast.dump(ast.parse(inspect.getsource(work))), self.version)
-        places = sorted(self.kept.glob(f"{work.__name__}-{key}-{'*' if self.stale else version}.json"))
-        if places:
-            return dict(json.loads(places[-1].read_text()))
-        said = ", ".join(str(value) for value in settings.values() if not isinstance(value, Path))
-        print(f"    {work.__name__}: {said}", file=sys.stderr, flush=True)
-        result = work(**settings)
-        self.kept.mkdir(parents=True, exist_ok=True)
-        written = self.kept / f"{work.__name__}-{key}-{version}.json"
-        partial = written.with_suffix(f".{os.getpid()}")
-        partial.write_text(json.dumps(result))
-        partial.replace(written)
-        return result
+    def many(self, work: Work, settings: Sequence[Json]) -> list[Json]:
+        """Return what a work gives for each of several settings; raise Wanted where some are not there yet."""
+        return self.store.many(work, settings)
 
     def draw(self, name: str, figure: Any) -> str:
-        """Write a figure, of few colours, and return its name."""
+        """Write a figure and return its name."""
+        return self.keep(name, rendered(figure))
+
+    def keep(self, name: str, picture: bytes) -> str:
+        """Write a picture, of few colours, and return its name."""
         self.out.mkdir(parents=True, exist_ok=True)
         small = io.BytesIO()
-        picture = Image.open(io.BytesIO(rendered(figure))).convert("RGB")
-        picture.quantize(COLOURS).save(small, format="PNG", optimize=True)
+        Image.open(io.BytesIO(picture)).convert("RGB").quantize(COLOURS).save(small, format="PNG", optimize=True)
         (self.out / name).write_bytes(small.getvalue())
         return name
 
+    def file(self, name: str) -> Path:
+        """Return where a reference cloud lies."""
+        return self.reference / "clouds" / f"{name}.ply"
+
     def cloud(self, name: str) -> Points | None:
         """Return a reference cloud, None where it is not there."""
-        path = self.reference / "clouds" / f"{name}.ply"
-        return load_cloud(path).points if path.exists() else None
+        return load_cloud(self.file(name)).points if self.file(name).exists() else None
 
     def scans(self) -> Iterator[tuple[str, Path]]:
         """Yield the clouds of --data by name."""
@@ -135,16 +122,7 @@ def cloud_panel(panel: Any, cloud: Points, view: Points) -> None:
     panel.set_yticks([])
 
 
-def sources() -> list[Path]:
-    """Return the files of the library."""
-    return sorted([*(ROOT / "tiskel").rglob("*.py"), *(ROOT / "kernels").glob("*.py")])
-
-
-def hashed(*texts: str) -> str:
-    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:12]
-
-
-def missing(what: str) -> Found:
+def missing(what: str = "the folder of reference clouds") -> Found:
     return Found("", UNTESTED, f"{what} is not there")
 
 
@@ -166,55 +144,3 @@ def ranked(a: Sequence[float], b: Sequence[float]) -> tuple[float, float]:
         return float("nan"), float("nan")
     rho, p = spearmanr(a, b)
     return float(rho), float(p)
-
-
-def page(rows: Sequence[tuple[str, Row, Found]], words: str) -> str:
-    """Return the table as a page, a part for each chapter."""
-    count = {verdict: sum(found.verdict == verdict for *_, found in rows) for verdict in (MET, KIND, AGAINST, UNTESTED)}
-    lines = ["# The dissertation, claim by claim", "", words, ""]
-    lines += [f"{len(rows)} rows: {', '.join(f'{n} {verdict}' for verdict, n in count.items())}.", ""]
-    for chapter in dict.fromkeys(chapter for chapter, *_ in rows):
-        lines += [f"## {chapter}", "", "| what | claim | published | here | verdict |", "|---" * 5 + "|"]
-        for _, row, found in (r for r in rows if r[0] == chapter):
-            links = " ".join(f"[figure](dissertation/{name})" for name in found.pictures)
-            command = f"`{row.command}`" if row.command else ""
-            claim = "; ".join(filter(None, (row.claim, command)))
-            here = " ".join(filter(None, (found.ours, links)))
-            verdict = f"**{found.verdict}**" + (f": {found.why}" if found.why else "")
-            cells = [row.number, claim, row.published, here, verdict]
-            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-        lines.append("")
-    return "\n".join(lines)
-
-
-def remembered(bench: Bench) -> dict[str, Found]:
-    """Return the rows of earlier runs by number and claim."""
-    place = bench.kept / "rows.json"
-    known = json.loads(place.read_text()) if place.exists() else {}
-    return {key: Found(**{**value, "pictures": tuple(value["pictures"])}) for key, value in known.items()}
-
-
-def remember(bench: Bench, found: dict[str, Found]) -> None:
-    bench.kept.mkdir(parents=True, exist_ok=True)
-    (bench.kept / "rows.json").write_text(json.dumps({key: asdict(value) for key, value in found.items()}, indent=1))
-
-
-def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
-    reference = os.environ.get("TISKEL_REFERENCE", ROOT / ".." / "shared" / "reference")
-    parser = argparse.ArgumentParser(
-        prog="benchmarks/dissertation", description="See benchmarks/dissertation/__main__.py"
-    )
-    parser.add_argument("--chapter", type=int, choices=(3, 4, 5))
-    parser.add_argument("--only", help="rows whose number or claim contains this")
-    parser.add_argument(
-        "--data", type=Path, help="folder of scans, in place of generated clouds, under published names"
-    )
-    parser.add_argument("--quick", action="store_true", help="few and small clouds: does it run?")
-    parser.add_argument("--clouds", nargs="+", metavar="POINTS:COUNT", help="as 1024:216 4096:216 16384:216")
-    parser.add_argument("--shapes", type=int, help="shapes with a true skeleton, for the measures")
-    parser.add_argument("--density", type=int, nargs="+", metavar="POINTS", help="of the study of density")
-    parser.add_argument("--stale", action="store_true", help="raw results of other versions of the library count, too")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of dissertation.md and its figures")
-    parser.add_argument("--kept", type=Path, default=ROOT / "out" / "dissertation", help="folder of raw results")
-    parser.add_argument("--reference", type=Path, default=Path(reference))
-    return parser.parse_args(words)
