@@ -6,9 +6,9 @@
     python benchmarks/dissertation --clouds 1024:24     # fewer of them
     python benchmarks/dissertation --quick --out DIR    # does it run?
 
-Writes docs/dissertation.md and the figures in docs/dissertation. Raw results are kept in out/dissertation, by settings
-and by the sources that make them: what was interrupted goes on, what did not change is not run again. Two processes of
-one thread each make them (--processes).
+Writes docs/dissertation.md and the figures in docs/dissertation; of a part of the rows, out/dissertation.md and the
+figures beside it. Raw results are kept in out/raw, by settings and by the sources that make them: what was interrupted
+goes on, what did not change is not run again. Two processes of one thread each make them (--processes).
 """
 
 import argparse
@@ -39,7 +39,9 @@ NOT_RUN = Found("", UNTESTED, "this row was not run when the page was made; --on
 def main() -> None:
     """Make what the rows asked for stand on; write the page with them and with those whose results are there."""
     chosen = arguments()
-    bench = Bench(sizes(chosen), chosen.out / "dissertation", Store(chosen.kept), chosen.reference, chosen.data)
+    part = chosen.only or chosen.chapter or chosen.quick
+    out = chosen.out or ROOT / ("out" if part else "docs")
+    bench = Bench(sizes(chosen), out / "dissertation", Store(chosen.kept), chosen.reference, chosen.data)
     rows = [(chapter, row) for chapter, some in CHAPTERS.items() for row in some]
     asked = [
         row for chapter, row in rows
@@ -53,9 +55,9 @@ def main() -> None:
     for chapter, row in rows:
         desk.lacking(chapter, row)
     print(f"{time.perf_counter() - start:.0f} s in all", file=sys.stderr)
-    chosen.out.mkdir(parents=True, exist_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
     every = [(chapter, row, desk.found.get(row.key, NOT_RUN)) for chapter, row in rows]
-    (chosen.out / "dissertation.md").write_text(page(every, bench, desk.spent))
+    (out / "dissertation.md").write_text(page(every, bench, desk.spent))
 
 
 @dataclass
@@ -118,8 +120,8 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--shapes", type=int, help="shapes with a true skeleton, for the measures")
     parser.add_argument("--density", type=int, nargs="+", metavar="POINTS", help="of the study of density")
     parser.add_argument("--processes", type=int, default=2, help="that make raw results, of one thread each")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of dissertation.md and its figures")
-    parser.add_argument("--kept", type=Path, default=ROOT / "out" / "dissertation", help="folder of raw results")
+    parser.add_argument("--out", type=Path, help="folder of dissertation.md and its figures; docs, of a part out")
+    parser.add_argument("--kept", type=Path, default=ROOT / "out" / "raw", help="folder of raw results")
     parser.add_argument("--reference", type=Path, default=Path(reference))
     return parser.parse_args(words)
 

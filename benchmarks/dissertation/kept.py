@@ -18,12 +18,14 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from multiprocessing import get_context
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 ONE = dict.fromkeys(("TISKEL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 OUTSIDE = {"viewer", "pictures", "io", "messages", "wording", "pipeline"}  # read, show and say: move no number
+GLANCE = 2.0  # seconds between looks at whether the process that started this one is there
 Json = dict[str, Any]
 Work = Callable[..., Json]
 Job = tuple[Work, Json]
@@ -68,7 +70,8 @@ class Store:
         wanted = {self.place(*job).name: job for job in jobs}
         self.folder.mkdir(parents=True, exist_ok=True)
         os.environ.update(ONE)
-        with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        context = get_context("spawn")
+        with ProcessPoolExecutor(processes, context, initializer=follow, initargs=(os.getpid(),)) as pool:
             made = {pool.submit(written, *job, self.folder / name): name for name, job in wanted.items()}
             try:
                 for number, done in enumerate(as_completed(made), 1):
@@ -89,6 +92,17 @@ class Store:
         record = json.loads(place.read_text())
         self.used[place.name] = {key: record[key] for key in ("elapsed", "processor")}
         return dict(record["result"])
+
+
+def follow(parent: int) -> None:
+    """End this process soon after the one that started it, however that ended."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(GLANCE)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
 
 
 def written(work: Work, settings: Json, place: Path) -> float:

@@ -16,8 +16,8 @@ row names, or 10 %; *met in kind*: not the value, or print has none, but the ten
 ours, and say so. What stands as a conjecture is one.
 
 `make dissertation` writes this page; `python benchmarks/dissertation --only "Fig 3.5"` makes one row, `--chapter 4` a
-chapter; `--data FOLDER` takes the scans of the original experiments in place of generated clouds. Figures are in the
-published form."""
+chapter, in `out`; `--data FOLDER` takes the scans of the original experiments in place of generated clouds. Figures are
+in the published form."""
 
 
 def page(rows: Sequence[tuple[str, Row, Found]], bench: Bench, spent: Spent) -> str:
