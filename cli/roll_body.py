@@ -35,10 +35,12 @@ def rolled(
         surface = read_surfaces(source).named(branch)
         run = roll_body(surface, body_named(body), settings[0], given)
     console.say(f"body {body}: {run.status.value}, {run.reason}")
+    console.warn(run.warnings)
     if as_json:
         said = {"branch": surface.name, "body": body, "status": run.status.value, "reason": run.reason,
                 "time": float(run.t[-1]), "start": run.state[0].tolist(), "end": run.state[-1].tolist(),
-                "least_margin": float(run.margin.min())}  # fmt: skip
+                "path_object": run.path_object, "path_body": run.path_body,
+                "least_margin": float(run.margin.min()), "warnings": list(run.warnings)}  # fmt: skip
         typer.echo(json.dumps(said, allow_nan=False))
     if output is not None or not as_json:
         stages.write(stages.output_path(output, source, "path.csv"), lambda: body_csv(run))

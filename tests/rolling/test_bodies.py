@@ -1,5 +1,7 @@
 """Two general bodies: a sphere among them, equal ways, the body where its contact is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from tiskel.rolling.bodies import roll_body
 from tiskel.rolling.roll import roll
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import RollStatus
-from tiskel.surfaces.analytic import Cone, Ellipsoid, Plane, Torus, sphere
+from tiskel.surfaces.analytic import Cone, Ellipsoid, EllipticCylinder, Plane, Torus, sphere
 
 SHARP = RollParams(radius=0.3, omega=(0.5, 0.3, 0.4), velocity=(0.02, 0.01, 0), start=(0.3, 1.0, 0.1, 0.1, 0.4),
                    duration=3.0, rate=20.0, rtol=1e-10, atol=1e-12)  # fmt: skip
@@ -50,6 +52,19 @@ def test_both_contact_ways_are_equally_long_without_slip() -> None:
     own = np.array([np.array(body.jet(*one).f, float) for one in r.state[:, 2:4].tolist()])
     ways = [np.linalg.norm(np.diff(way, axis=0), axis=1).sum() for way in (r.contact, own)]
     assert ways[0] == pytest.approx(ways[1], rel=1e-5)  # 1500 chords of bends of a radian in all
+
+
+def test_a_body_that_slips_though_nobody_asked_for_it_is_told() -> None:
+    """A ball over a thin blade, at the published tolerances: as a sphere it was told, as a body it was not."""
+    p = RollParams(omega=(-0.1, -3.3, 0.7), start=(5.39, 0.51, 0.1, 0.1, 0.0), duration=6.0)
+    blade, ball = EllipticCylinder(2.0, 0.1), Ellipsoid(10.0, 10.0, 10.0)
+    loose, close = roll_body(blade, ball, replace(p, rtol=1e-3, atol=1e-5)), roll_body(blade, ball, p)
+    apart = 100 * abs(loose.path_object - loose.path_body) / max(loose.path_object, loose.path_body)
+    assert apart > 0.3
+    assert any(f"over the body, {apart:.2g} % apart though there is no slip" in said for said in loose.warnings)
+    assert close.warnings == ()
+    assert close.path_object == pytest.approx(close.path_body, rel=1e-4)
+    assert roll_body(blade, ball, replace(p, rtol=1e-3, atol=1e-5, velocity=(0, 0.05, 0))).warnings == ()
 
 
 def test_a_body_that_bends_less_than_the_surface_does_not_fit() -> None:

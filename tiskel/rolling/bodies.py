@@ -19,9 +19,10 @@ from tiskel.progress import Report, Span
 from tiskel.rolling.endings import Ending, ends_of_branch, poles
 from tiskel.rolling.equations import contact_rates
 from tiskel.rolling.inputs import Inputs, constant
+from tiskel.rolling.reading import arcs, columns, fine_times
 from tiskel.rolling.solution import Solution, duration_of, solve, told_of
 from tiskel.rolling.sphere import quaternions_of, turn_of
-from tiskel.rolling.trajectory import RollStatus
+from tiskel.rolling.trajectory import RollStatus, told_inputs, told_slip
 from tiskel.shown import Brief
 from tiskel.surfaces.forms import Forms, curvature, forms_of
 from tiskel.surfaces.jets import ParametricSurface
@@ -51,6 +52,12 @@ class BodyTrajectory(Brief):
         Why the run ended.
     reason : str
         The same as a sentence, with the time.
+    path_object : float
+        Length of the contact's way over the object, measured from places along it, not from rates.
+    path_body : float
+        The same over the body; without slip both are equal.
+    warnings : tuple of str
+        What a user should know: of the inputs, and of slip that nobody asked for.
 
     Examples
     --------
@@ -60,6 +67,8 @@ class BodyTrajectory(Brief):
     >>> r = roll_body(Torus(5.0, 2.0), Ellipsoid(0.3, 0.4, 0.25), p)
     >>> r.t.shape, r.contact.shape, r.orientation.shape, r.status.value
     ((11,), (11, 3), (11, 4), 'finished')
+    >>> f"{r.path_object:.5f} {r.path_body:.5f}", r.warnings
+    ('0.23287 0.23287', ())
     """
 
     _said = ("t", "status", "reason")
@@ -72,6 +81,9 @@ class BodyTrajectory(Brief):
     margin: Numbers
     status: RollStatus
     reason: str
+    path_object: float
+    path_body: float
+    warnings: tuple[str, ...] = ()
 
 
 def roll_body(
@@ -140,7 +152,7 @@ def roll_body(
     told = rate if progress is None else told_of(rate, duration_of(params, inputs), span)
     solution = solve(told, start, params, inputs, np.inf, [*ends, tight])
     span.at(1)
-    return pair.read(solution)
+    return pair.read(solution, inputs, params)
 
 
 @dataclass(frozen=True)
@@ -161,7 +173,13 @@ class _Pair:
         parts = [np.array([[xx, xy], [xy, yy]], float) for xx, xy, yy in (curvature(over), curvature(own))]
         return float(np.linalg.eigvalsh(parts[0] + turn @ parts[1] @ turn)[0])
 
-    def read(self, solution: Solution) -> BodyTrajectory:
+    def ways(self, solution: Solution) -> tuple[float, float]:
+        """Return how far the contact has come over the object and over the body, from places along both."""
+        u, v, u_s, v_s, _ = solution.at(fine_times(solution.steps))
+        over, own = columns(self.surface.jet(u, v).f), columns(self.body.jet(u_s, v_s).f)
+        return float(arcs(over).sum()), float(arcs(own).sum())
+
+    def read(self, solution: Solution, inputs: Inputs, params: RollParams) -> BodyTrajectory:
         """Return the trajectory of a solution: Q F_s = F R3, Q f_s + c = f_o."""
         contact, position, rotations = [], [], []
         for u, v, u_s, v_s, psi in solution.states.tolist():
@@ -170,7 +188,9 @@ class _Pair:
             rotations.append(frame @ turn_of(psi) @ body_frame.T)
             contact.append(np.array(over.f, float))
             position.append(contact[-1] - rotations[-1] @ np.array(own.f, float))
+        ways, size = self.ways(solution), float(np.linalg.norm(contact[0] - position[0]))
         return BodyTrajectory(
             solution.t, solution.states, np.array(contact), np.array(position), quaternions_of(np.array(rotations)),
             np.array([self.margin(*one) for one in solution.states.tolist()]), solution.status, solution.reason,
+            *ways, (*told_inputs(inputs), *told_slip(inputs, ways, size, params, "body")),
         )  # fmt: skip

@@ -3,11 +3,10 @@
 import numpy as np
 
 from tiskel.arrays import Numbers, Points, Stack, Table
-from tiskel.geometry.frames import step_lengths
 from tiskel.params import RollParams
 from tiskel.rolling.ambient import AmbientRate, least_curvature
 from tiskel.rolling.free_solution import Stretches
-from tiskel.rolling.reading import fine_times
+from tiskel.rolling.reading import arcs, fine_times
 from tiskel.rolling.solution import even_times
 from tiskel.rolling.sphere import chart_of, rotation_of
 from tiskel.rolling.trajectory import Trajectory, told_inputs, told_slip
@@ -80,18 +79,6 @@ def _ways(rate: AmbientRate, found: Stretches, t: Numbers) -> Table:
     reached = np.concatenate([part + first for part, first in zip(ends, begun, strict=True)])
     every = np.concatenate(moments)
     return np.column_stack([np.interp(t, every, column) for column in reached.T])
-
-
-def arcs(places: Points) -> Numbers:
-    """Return the lengths (n - 1,) of a smooth way between places (n, 3), n odd, exact to the fourth order."""
-    chords = step_lengths(places)
-    if len(chords) % 2:
-        return chords
-    pairs = chords[::2] + chords[1::2]
-    double = step_lengths(places[::2])
-    return np.asarray(
-        chords * np.repeat(np.where(pairs > 0, 1 + (pairs - double) / (3 * np.maximum(pairs, 1e-300)), 1), 2)
-    )
 
 
 def _local_radii(rate: AmbientRate, places: Points) -> Numbers:

@@ -12,6 +12,8 @@ from tiskel.params import RollParams
 from tiskel.rolling.ambient import AmbientRate, frame_of
 from tiskel.rolling.free_endings import Watch
 from tiskel.rolling.second import Surroundings
+from tiskel.rolling.solution import stops
+from tiskel.rolling.stepping import RowByRow
 from tiskel.rolling.trajectory import RollStatus
 
 SCALED = 0.1  # of the tolerances: places are in radii of the sphere here, and ways are to be of one length to 1e-5
@@ -74,8 +76,9 @@ def solve_stretches(
     found, y, t = Stretches(), start, 0.0
     for _ in range(CHANGES):
         solved: Any = solve_ivp(
-            told, (t, duration), y, method="RK45", rtol=SCALED * params.rtol, atol=SCALED * params.atol,
-            max_step=longest, events=list(watched), dense_output=True,
+            told, (t, duration), y, method=RowByRow, rows=stops(rate.inputs, rate.ground.radius),
+            rtol=SCALED * params.rtol, atol=SCALED * params.atol, max_step=longest, events=list(watched),
+            dense_output=True,
         )  # fmt: skip
         found.evaluations += int(solved.nfev)
         t, y = float(solved.t[-1]), solved.y[:, -1]

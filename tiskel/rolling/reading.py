@@ -69,6 +69,18 @@ def fine_times(steps: Numbers) -> Numbers:
     return np.interp(np.arange((len(steps) - 1) * pieces + 1) / pieces, np.arange(len(steps)), steps)
 
 
+def arcs(places: Points) -> Numbers:
+    """Return the lengths (n - 1,) of a smooth way between places (n, 3), n odd, exact to the fourth order."""
+    chords = step_lengths(places)
+    if len(chords) % 2:
+        return chords
+    pairs = chords[::2] + chords[1::2]
+    double = step_lengths(places[::2])
+    return np.asarray(
+        chords * np.repeat(np.where(pairs > 0, 1 + (pairs - double) / (3 * np.maximum(pairs, 1e-300)), 1), 2)
+    )
+
+
 def frames_of(forms: Forms) -> Stack:
     """Return (n, 3, 3), x, y and z as columns."""
     return np.stack([columns(side) for side in forms[:3]], axis=-1)

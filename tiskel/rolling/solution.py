@@ -12,11 +12,13 @@ from tiskel.params import RollParams
 from tiskel.progress import Span
 from tiskel.rolling.endings import Ending
 from tiskel.rolling.inputs import Inputs
+from tiskel.rolling.stepping import RowByRow
 from tiskel.rolling.trajectory import RollStatus
 
 R = TypeVar("R")
 USUAL_DURATION = 10.0  # seconds
 STRIDE = 0.4  # radians that the body turns in a step of the solver at most: endings are looked for between steps
+CLOSE = 0.08  # radians from a row of the inputs to the next but one: of closer ones the kinks are less than tolerances
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +74,8 @@ def solve(
         The first of those that occur at one time is told.
     """
     solved = solve_ivp(
-        rate, (0.0, duration_of(params, inputs)), start, method="RK45", rtol=params.rtol, atol=params.atol,
-        max_step=longest_step(inputs, radius), events=list(watched), dense_output=True,
+        rate, (0.0, duration_of(params, inputs)), start, method=RowByRow, rows=stops(inputs, radius), rtol=params.rtol,
+        atol=params.atol, max_step=longest_step(inputs, radius), events=list(watched), dense_output=True,
     )  # fmt: skip
     t = even_times(float(solved.t[-1]), params.rate)
     status, reason = _ending(solved, watched)
@@ -94,9 +96,20 @@ def duration_of(params: RollParams, inputs: Inputs) -> float:
 
 def longest_step(inputs: Inputs, radius: float) -> float:
     """Return the longest step in time that misses neither a row of the inputs nor a place where the run should end."""
-    fastest = float((np.linalg.norm(inputs.values[:, :3], axis=1)
-                     + np.linalg.norm(inputs.values[:, 3:], axis=1) / radius).max())  # fmt: skip
+    fastest = _fastest(inputs, radius)
     return min(inputs.longest_step, STRIDE / fastest) if fastest > 0 else inputs.longest_step
+
+
+def stops(inputs: Inputs, radius: float) -> Numbers:
+    """Return times (k,) at which a step of the solver has to end: rows, every second one of those close together."""
+    close = len(inputs.t) > 2 and _fastest(inputs, radius) * inputs.longest_step < CLOSE
+    return inputs.t[::2] if close else inputs.t
+
+
+def _fastest(inputs: Inputs, radius: float) -> float:
+    """Return how fast the body turns at most, in radians per second; slip counts as the radians that it takes."""
+    turning, slip = (np.linalg.norm(part, axis=1) for part in np.hsplit(inputs.values, [3]))
+    return float((turning + slip / radius).max())
 
 
 def _ending(solved: Any, watched: Sequence[Ending]) -> tuple[RollStatus, str]:

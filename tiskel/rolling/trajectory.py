@@ -184,17 +184,22 @@ def _finite(values: Numbers) -> list[float | None]:
 
 def told_inputs(inputs: Inputs) -> tuple[str, ...]:
     """Return the warnings of inputs, and that they are zero."""
-    still = () if inputs.values.any() else ("the inputs are zero: the sphere stays where it is",)
+    still = () if inputs.values.any() else ("the inputs are zero: what should roll stays where it is",)
     return (*inputs.warnings, *still)
 
 
-def told_slip(inputs: Inputs, lengths: tuple[float, float], radius: float, params: RollParams) -> tuple[str, ...]:
-    """Return a warning where the two ways differ though there is no slip."""
+def told_slip(
+    inputs: Inputs, lengths: tuple[float, float], size: float, params: RollParams, body: str = "sphere"
+) -> tuple[str, ...]:
+    """Return a warning where the ways over the surface and over the body differ though there is no slip.
+
+    Of every kind of run: of spheres with and without a chart, and of other bodies.
+    """
     longer, apart = max(lengths), abs(lengths[0] - lengths[1])
-    if inputs.slips or not longer > STANDING * radius or not apart > SLIPLESS * longer:
+    if inputs.slips or not longer > STANDING * size or not apart > SLIPLESS * longer:
         return ()
     return (
-        f"the contact's way is {lengths[0]:.6g} over the surface and {lengths[1]:.6g} over the sphere, "
+        f"the contact's way is {lengths[0]:.6g} over the surface and {lengths[1]:.6g} over the {body}, "
         f"{100 * apart / longer:.2g} % apart though there is no slip; take a smaller rtol than {params.rtol:g} "
         f"and a smaller atol than {params.atol:g} (--rtol, --atol)",
     )
