@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from tiskel import Inputs, Plan, PlanParams, RollParams, TiskelError, plan_roll, roll_on
 from tiskel.rolling.ambient import Ground, frame_about
-from tiskel.rolling.courses import clock
+from tiskel.rolling.courses import clock, tight_centres
 from tiskel.rolling.many import Poses, roll_many
 from tiskel.rolling.sphere import rotation_of
 from tiskel.surfaces.implicit import projected
@@ -59,6 +59,20 @@ def test_the_way_around_a_sphere_is_a_great_circle() -> None:
     plan = plan_roll(Sphere(1.0), PlanParams(start_at=(1, 0, 0), goal=(-0.6, 0.8, 0), radius=0.25))
     arrives(Sphere(1.0), plan)
     assert plan.run.path_object == pytest.approx(np.arccos(-0.6), rel=2e-3)
+
+
+def test_ways_are_looked_at_until_one_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Around what is too tight ways slide on by less than a radius a look: after eight looks there was no plan."""
+    angles = np.linspace(-0.7, 0.7, 13)
+    looks = iter(0.75 * np.stack([0 * angles, np.sin(angles), np.cos(angles)], axis=1))
+
+    def tight(standing: Any, way: Any) -> Any:
+        return next((one[None] for one in looks), tight_centres(standing, way))
+
+    monkeypatch.setattr("tiskel.rolling.plan.tight_centres", tight)
+    plan = plan_roll(ROD, PlanParams(start_at=(-0.9, 0, 0.5), goal=(0.9, 0, 0.5), radius=0.25))
+    arrives(ROD, plan)
+    assert np.abs(plan.run.contact[:, 1]).max() > 0.3  # around what was closed
 
 
 QUARTER = (float(np.sqrt(0.5)), 0.0, 0.0, float(np.sqrt(0.5)))

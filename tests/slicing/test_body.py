@@ -107,11 +107,11 @@ def test_points_that_were_held_out_are_as_near() -> None:
     assert held.mean() < 1.2 * body.summary["mean"] + 0.002
 
 
-@pytest.mark.parametrize(("noise", "most"), [(0.0, 0.03), (0.01, 0.06)])
+@pytest.mark.parametrize(("noise", "most"), [(0.0, 0.016), (0.01, 0.015)])
 def test_curvatures_of_a_torus(noise: float, most: float) -> None:
-    """In units of 1 / R, the mean of the larger error of both; without the tube thrice as far off at most."""
+    """In units of 1 / R, the mean of the larger error of both; without the tube six times as far off at most."""
     s = skeleton("torus", noise=noise)
-    for surfaces, allowed in ((fit_surface(s), most), (None, 3 * most)):
+    for surfaces, allowed in ((fit_surface(s), most), (None, 6 * most)):
         body = fit_body(s, surfaces)
         at = projected(body, s.cloud[::8])
         shape = tangency(body, at).shape
@@ -192,7 +192,8 @@ def test_beyond_all_patches_nothing_is_known(y: Surfaces) -> None:
 
 
 def test_tubes_give_patches_where_they_fit(torus: Surfaces) -> None:
-    assert whole(torus).of_tubes > 0.5
+    """Outside the bend slabs spread, and a fifth of the points lies between them: these are the tube's all the same."""
+    assert whole(torus).of_tubes > 0.95
     assert whole(fit_whole(skeleton("egg"), SurfaceParams(interval=0.2))).of_tubes == 0
 
 

@@ -27,7 +27,7 @@ from tiskel.shown import Brief
 from tiskel.surfaces.implicit import ImplicitSurface
 
 ROUNDS = 6  # of rolling a plan and correcting it
-TRIES = 8  # of ways, each without the places that were too tight on those before
+LOOKS, TRIES = 60, 8  # ways that are looked at, each without what was too tight on those before; ways that are rolled
 TIGHT = "every way that was tried leads through places that are too tight for it; take a smaller one"
 SITES = 5  # places along a way where a loop for the attitude is tried besides its ends
 
@@ -141,19 +141,21 @@ def plan_roll(
     places = reachable(standing, start, goal, params)
     pose = _begun(ground, start, params)
     reasons: list[str] = []
-    for number in range(TRIES):
-        span.at(0.3 + 0.6 * number / TRIES, "way")
+    rolled = 0
+    for number in range(LOOKS):
+        span.at(0.3 + 0.6 * number / LOOKS, "way")
         way = pulled_tight(standing, shortest_way(standing, places))
         tight = tight_centres(standing, way)
         if len(tight) == 0:
+            rolled += 1
             for segments, loop in _drafts(standing, pose, way, goal, params, reasons):
                 found = _rolled(surface, standing, pose, segments, way, loop, params, reasons)
                 if isinstance(found, Plan):
                     span.at(1)
                     return found
                 tight = np.concatenate([tight, found])
-        if len(tight) == 0:
-            break
+            if len(tight) == 0 or rolled == TRIES:
+                break
         standing = standing.without(tight)
     raise TiskelError(f"no plan for a sphere of radius {ground.radius:.4g}: {reasons[-1] if reasons else TIGHT}")
 

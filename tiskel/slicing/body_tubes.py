@@ -17,7 +17,8 @@ from tiskel.surfaces.tube import V_STOP
 PLACES = 400  # of the skeleton curve, for first guesses
 MARGIN = 0.02  # of the curve at both ends, where nothing holds the curvatures of a spline
 AROUND = 12  # nearest points that are asked whether the tube is theirs
-OWN = 0.9  # share of a point's nearest that the tube was fitted to
+OWN = 0.9  # share of a point's nearest that are the tube's
+BETWEEN = 0.5  # the same of a point that no slice saw: it is the tube's, too, as those outside bends between two slabs
 BIASED = 3.0  # deviations of a mean of residuals that chance allows
 
 
@@ -64,7 +65,7 @@ def on_tubes(body: BodyPoints, surfaces: Surfaces | None, params: BodyParams) ->
     size = len(body.points)
     out = OnTubes(np.zeros(size, bool), np.zeros((size, 3)), np.zeros((size, 3)), np.zeros((size, 6)), np.zeros(size))
     for tube in surfaces or ():
-        own = np.isin(body.rows, tube.rows)
+        own = _own(body, tube)
         rows = np.flatnonzero(own).astype(np.int32)
         if len(rows) == 0:
             continue
@@ -81,6 +82,12 @@ def on_tubes(body: BodyPoints, surfaces: Surfaces | None, params: BodyParams) ->
         for column, values in zip(out, parts, strict=True):
             column[rows[good]] = values[good]
     return out
+
+
+def _own(body: BodyPoints, tube: FittedSurface) -> Mask:
+    """Return (n,) which points a tube was fitted to, with those that lie between them: slabs spread outside bends."""
+    seen = np.isin(body.rows, tube.rows)
+    return np.asarray(seen | (seen[body.near[:, :AROUND]].mean(axis=1) >= BETWEEN))
 
 
 def _places(tube: FittedSurface, points: Points) -> tuple[Numbers, Numbers]:
