@@ -4,8 +4,9 @@
 
 From a random place to another within thirty radii of the ball; four of five to a
 random attitude, every fourth of these with spin. The ball is a quarter of the
-median radius, of the bunny, where that stands hardly anywhere, a sixteenth: a second
-table says where balls stand. What is refused is tried again, looked at twice as
+median radius, of the bunny, where that stands at three of four places and gets from
+one to another on 3 of 20 pairs (of an eighth on 15), a sixteenth: a second table says
+where balls stand. What is refused is tried again, looked at twice as
 closely and with a ball of half the radius. Rows are kept as they come, and what is
 there is not planned again. The clouds come from TISKEL_REFERENCE, or ../shared/reference.
 """

@@ -39,6 +39,18 @@ MeshFile = Annotated[
         rich_help_panel="Output",
     ),
 ]
+Edge = Annotated[
+    float | None,
+    typer.Option(
+        "--edge",
+        metavar="LENGTH",
+        min=0.0,
+        help="About how long the sides of these triangles are; not given: a quarter of the radius of thin parts, "
+        "longer on large bodies, whose twigs may then be missing, which is told.",
+        show_default=False,
+        rich_help_panel="Output",
+    ),
+]
 NoBody = Annotated[
     bool, typer.Option("--no-body", help="Leave the surface of the whole body out.", rich_help_panel="Method")
 ]
@@ -73,6 +85,7 @@ def slice_command(
     no_recentre: so.NoRecentre = not so.SURFACE.recentre,
     no_body: NoBody = False,
     mesh: MeshFile = None,
+    edge: Edge = None,
     tubes: Tubes = False,
     caps: Caps = False,
     table: TableFile = None,
@@ -102,9 +115,9 @@ def slice_command(
     if (tubes or caps or table is not None or plot is not None) and not len(surfaces):
         raise TiskelError("no branch has a tube: there are no slices to draw or tabulate; leave out what asks for them")
     if mesh is not None:
-        stages.write(
-            mesh, lambda: mesh_bytes(tubes_mesh(surfaces, caps) if tubes or caps else mesh_of(surfaces), mesh, origin)
-        )
+        triangles = tubes_mesh(surfaces, caps) if tubes or caps else mesh_of(surfaces, edge)
+        console.warn(getattr(triangles, "warnings", ()))
+        stages.write(mesh, lambda: mesh_bytes(triangles, mesh, origin))
     if table is not None:
         stages.write(table, lambda: slices_csv(surfaces))
     if plot is not None:

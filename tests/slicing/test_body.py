@@ -31,6 +31,8 @@ from tiskel import (
     make_shape,
     shape_graph,
 )
+from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.mesh import TriangleMesh
 from tiskel.geometry.round_cones import union_distance
 from tiskel.io.mesh_file import dump_mesh
 from tiskel.io.stages.surface import dump_surfaces, parse_surfaces
@@ -163,6 +165,27 @@ def test_the_mesh_of_a_y_is_a_ball_where_the_shape_is(y: Surfaces) -> None:
     assert trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False).euler_number == 2
     off = np.abs(union_distance(mesh.vertices, shape_graph("y"))) / whole(y).radius
     assert np.quantile(off, 0.95) < 0.03  # seams of the union are sharp, those of the surface are not
+
+
+def test_twigs_that_triangles_do_not_show_are_told() -> None:
+    """A twig of radius 0.04 from a trunk of 0.5, between the places of the grid that thin parts of it ask for."""
+    generator = np.random.default_rng(0)
+    u, w = generator.uniform(0, 2 * np.pi, 3000), generator.uniform(0, 2 * np.pi, 300)
+    trunk = np.stack([0.5 * np.cos(u), 0.5 * np.sin(u), generator.uniform(0, 2, 3000)], axis=1)
+    twig = np.stack([generator.uniform(0.5, 1.5, 300), 0.055 + 0.04 * np.cos(w), 1.055 + 0.04 * np.sin(w)], axis=1)
+    along = np.linspace(0, 2, 9)[:, None]
+    nodes = np.concatenate([along * [0, 0, 1.0], [0.5, 0.055, 1.055] + along * [0.5, 0, 0]])
+    edges = np.array([*zip(range(8), range(1, 9), strict=True), (4, 9), *zip(range(9, 17), range(10, 18), strict=True)])
+    curve = CurveGraph(nodes, edges.astype(np.int32), np.repeat([0.5, 0.04], 9))
+    body = fit_body(curve, cloud=np.concatenate([trunk, twig]))
+    coarse, fine = body_mesh(body, 0.2), body_mesh(body, 0.05)
+    assert 0.02 < coarse.lost < 0.1
+    assert "the mesh lacks" in coarse.warnings[0]
+    assert "--edge" in coarse.warnings[0]
+    assert fine.lost < 0.001  # one of the patches at its tip
+    assert fine.warnings == ()
+    assert fine.vertices[:, 0].max() > 1.45
+    assert len(TriangleMesh(fine.vertices, fine.triangles).halves.free) == 0
 
 
 def test_a_gap_is_closed_and_marked() -> None:

@@ -8,9 +8,9 @@ import numpy as np
 from tiskel.arrays import Points
 from tiskel.geometry.strays import body_of
 from tiskel.params import LookParams
-from tiskel.pictures.canvas import Sight, dots, framed, new_figure, sight_of
+from tiskel.pictures.canvas import Sight, dots, framed, new_figure, sight_of, with_axes
 from tiskel.pictures.rolling import facing, way
-from tiskel.pictures.style import CURVE, INK, colour_of
+from tiskel.pictures.style import CURVE, INK, SIZES, colour_of
 from tiskel.rolling.sphere import rotation_of
 from tiskel.rolling.trajectory import Trajectory
 from tiskel.slicing.fitted import FittedSurface
@@ -79,10 +79,9 @@ def _frames(surface: FittedSurface | BodySurface, run: Trajectory, look: LookPar
         dots(panel, sight.flat(shown), sight.view.depth(shown))
         way(panel, run, sight, CURVE, int(row) + 1)
         _ball(panel, run, int(row), sight)
-        panel.set_aspect("equal", adjustable="box")
+        with_axes(panel, sight)
         framed(panel, sight, room)
-        panel.set_axis_off()
-        panel.set_title(f"t = {run.t[row]:.2f} s, {sight.view.name}", fontsize=9)
+        panel.set_title(f"t = {run.t[row]:.2f} s, {sight.view.name}", fontsize=SIZES["head"])
         out = io.BytesIO()
         figure.savefig(out, format="png", dpi=DPI, metadata={"Software": None})
         pictures.append(out.getvalue())

@@ -149,12 +149,17 @@ def cloud_panel(panel: Any, sight: Sight, frame: Points | None = None, *, small:
     """
     shown = sight.cloud[:: -(-len(sight.cloud) // SHOWN_POINTS) or 1]
     dots(panel, sight.flat(shown), sight.view.depth(shown), SMALL if small else 1.0)
+    with_axes(panel, sight)
+    framed(panel, sight, sight.cloud if frame is None else frame)
+
+
+def with_axes(panel: Any, sight: Sight) -> None:
+    """Give a panel one scale and the names of the input's axes, with the unit of length."""
     panel.set_aspect("equal", adjustable="box")
     panel.tick_params(labelsize=SIZES["ticks"])
     across, up = sight.view.labels
     panel.set_xlabel(with_unit(across, sight.unit), fontsize=SIZES["ticks"], labelpad=1)
     panel.set_ylabel(with_unit(up, sight.unit), fontsize=SIZES["ticks"], labelpad=1)
-    framed(panel, sight, sight.cloud if frame is None else frame)
 
 
 def dots(panel: Any, flat: Points, depth: Numbers, scale: float = 1.0) -> None:

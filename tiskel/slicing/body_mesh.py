@@ -24,6 +24,8 @@ STEPS, FARTHEST = 4, 0.7  # Newton steps of vertices onto the surface, and how f
 ROUNDS, SHARE = 3, 0.5  # of evening out, and how much of the way vertices go to the middle of their neighbours
 FEWEST, BUBBLE = 10, 0.005  # patches of a closed part, and share of them: below, it is none of the body
 AROUND = 4  # neighbours that say how far patches are apart
+TOLD = 0.002  # of the surface: more that the mesh lacks is told
+LOST = 1.0  # steps of the grid from the nearest vertex: what of the surface is farther away the mesh does not have
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -36,10 +38,26 @@ class BodyMesh(Mesh):
         Unit vectors out of the body.
     curvatures : (p, 2) float64
         The smaller and the larger principal curvature, in 1 / length; NaN beyond all patches.
+    edge : float
+        About how long sides of triangles are, in the cloud's unit.
+    lost : float
+        The share of the surface that is not in the mesh, from 0 to 1: twigs that are thinner than its triangles.
     """
 
     normals: Points
     curvatures: Table
+    edge: float
+    lost: float
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a user should know."""
+        if self.lost < TOLD:
+            return ()
+        return (
+            f"the mesh lacks {self.lost:.1%} of the surface, thinner than its triangles of {self.edge:.3g} show; "
+            "give shorter ones (--edge), or parts of the cloud alone",
+        )
 
 
 def body_mesh(body: BodySurface, edge: float | None = None) -> BodyMesh:
@@ -53,8 +71,9 @@ def body_mesh(body: BodySurface, edge: float | None = None) -> BodyMesh:
     body : BodySurface
         The surface.
     edge : float, optional
-        About how long sides of triangles are, in the cloud's unit; not given: a fifth of the local radius of thin
-        parts, or more where there would be half a million triangles.
+        About how long sides of triangles are, in the cloud's unit; not given: a quarter of the local radius of thin
+        parts, or more where there would be half a million triangles. Then twigs beside a trunk may be thinner than
+        triangles are long, and not be there: see ``lost``.
 
     Returns
     -------
@@ -62,19 +81,24 @@ def body_mesh(body: BodySurface, edge: float | None = None) -> BodyMesh:
     """
     seen = _seen(body)
     step = edge or step_of(body, seen)
-    found = marched(lambda places: _values(body, seen, places, step), body.patches.centres, step, 4 * MOST)
+    most = 4 * MOST if edge is None else int(4 * max(MOST, 2 * seen.areas.sum() / edge**2))
+    found = marched(lambda places: _values(body, seen, places, step), body.patches.centres, step, most)
     found = _without_bubbles(body, found)
     vertices = _settled(body, found, step)
     there = np.isfinite(body.level(vertices).value)
     at = tangency(body, vertices[there])
     normals, curvatures = _vertex_normals(vertices, found.triangles), np.full((len(vertices), 2), np.nan)
     normals[there], curvatures[there] = at.normal, _principal(at)
-    return BodyMesh(vertices, found.triangles, body.trust(vertices), normals=normals, curvatures=curvatures)
+    far = cKDTree(vertices).query(body.patches.centres)[0] > LOST * step
+    return BodyMesh(
+        vertices, found.triangles, body.trust(vertices), normals=normals, curvatures=curvatures, edge=step,
+        lost=float(seen.areas[far].sum() / seen.areas.sum()),
+    )  # fmt: skip
 
 
-def mesh_of(surfaces: Surfaces) -> Mesh:
-    """Return the mesh of the whole body, or of the tubes where it has no surface."""
-    return tubes_mesh(surfaces) if surfaces.body is None else body_mesh(surfaces.body)
+def mesh_of(surfaces: Surfaces, edge: float | None = None) -> Mesh:
+    """Return the mesh of the whole body, or of the tubes where it has no surface; see :func:`body_mesh`."""
+    return tubes_mesh(surfaces) if surfaces.body is None else body_mesh(surfaces.body, edge)
 
 
 def tubes_mesh(surfaces: Surfaces, caps: bool = False) -> Mesh:
