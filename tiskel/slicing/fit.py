@@ -97,11 +97,12 @@ def fit_surface(
     else:
         every, owned = given_cloud(cloud)[0], False
     body, surfaces, rejected = body_rows(every), [], {}
+    scale = diagonal(every[body])
     for number, path in enumerate(paths := paths_of(skeleton, params.branch)):
         span.at(number / len(paths), f"branch {path.name}")
         near = body & np.isin(owner, path.nodes) if owned else body
         try:
-            surfaces.append(_fitted(path, skeleton.nodes, every, near, owned, params, diagonal(every[body])))
+            surfaces.append(_fitted(path, skeleton.nodes, every, near, owned, params, scale))
         except Rejected as reason:
             rejected[path.name] = str(reason)
     if not surfaces:
