@@ -25,7 +25,7 @@ from tiskel.surfaces.patches import BodySurface
 CLOUDS = {"hammer": "outside", "bunny": "outside", "fertility": "outside", "cave": "inside", "horse": "outside"}
 HERE = Path(__file__).parent / "rolling"
 REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", "../shared/reference"))
-HEAD = ("cloud", "roll", "radius", "seconds", "status", "time", "way, radii", "slip", "deepest", "branches", "ends")
+HEAD = ("cloud", "roll", "radius", "seconds of CPU", "status", "time", "way, radii", "slip", "deepest", "branches", "ends")
 
 
 def body_of_cloud(name: str) -> tuple[Skeleton, BodySurface]:
@@ -51,13 +51,13 @@ def random_roll(name: str, skeleton: Skeleton, body: BodySurface, tree: cKDTree,
             radius=radius, side=CLOUDS[name], start_at=tuple(start), duration=20.0, rate=20.0,
             omega=(np.cos(angle), np.sin(angle), spin),
         )  # fmt: skip
-        begun = time.perf_counter()
+        begun = time.process_time()
         try:
             r = roll_on(body, params)
         except TiskelError:
             refused += 1
             continue
-        seconds = time.perf_counter() - begun
+        seconds = time.process_time() - begun
         slip = abs(r.path_object - r.path_sphere) / max(r.path_object, 1e-12)
         deepest = float((1 - tree.query(r.centre)[0] / radius).max())
         nodes = skeleton.node_of_point[tree.query(r.contact)[1]]
@@ -70,7 +70,7 @@ def random_roll(name: str, skeleton: Skeleton, body: BodySurface, tree: cKDTree,
 def summary(rows: list[list]) -> str:
     """Return the table of the clouds as Markdown."""
     lines = [
-        "| cloud | rolls | refused starts | median s | longest s | slip, most | deepest, radii | several branches | "
+        "| cloud | rolls | refused starts | median s of CPU | longest | slip, most | deepest, radii | several branches | "
         "over an end | ended |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
