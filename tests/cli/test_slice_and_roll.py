@@ -41,7 +41,8 @@ def test_slice_and_roll_chain_through_pipes(tiskel: Runner, stage: bytes) -> Non
     sliced = tiskel("slice", "-", data=stage)
     assert sliced.returncode == 0
     assert json.loads(sliced.stdout)["format"] == 1
-    assert b"3 branches have surfaces: lengths " in sliced.stderr
+    assert b"branch 0: length" in sliced.stderr
+    assert b"fitted" in sliced.stderr
     rolled = tiskel("roll", "-", "--omega", "0,1,0", "--duration", 1, data=sliced.stdout)
     assert rolled.returncode == 0
     rows = table(rolled.stdout)
