@@ -25,7 +25,19 @@ from tiskel.surfaces.patches import BodySurface
 CLOUDS = {"hammer": "outside", "bunny": "outside", "fertility": "outside", "cave": "inside", "horse": "outside"}
 HERE = Path(__file__).parent / "rolling"
 REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", "../shared/reference"))
-HEAD = ("cloud", "roll", "radius", "seconds of CPU", "status", "time", "way, radii", "slip", "deepest", "branches", "ends")
+HEAD = (
+    "cloud",
+    "roll",
+    "radius",
+    "seconds of CPU",
+    "status",
+    "time",
+    "way, radii",
+    "slip",
+    "deepest",
+    "branches",
+    "ends",
+)
 
 
 def body_of_cloud(name: str) -> tuple[Skeleton, BodySurface]:
@@ -70,8 +82,8 @@ def random_roll(name: str, skeleton: Skeleton, body: BodySurface, tree: cKDTree,
 def summary(rows: list[list]) -> str:
     """Return the table of the clouds as Markdown."""
     lines = [
-        "| cloud | rolls | refused starts | median s of CPU | longest | slip, most | deepest, radii | several branches | "
-        "over an end | ended |",
+        "| cloud | rolls | refused starts | median s of CPU | longest | slip, most | deepest, radii "
+        "| several branches | over an end | ended |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for name in [*CLOUDS, "all"]:

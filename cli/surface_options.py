@@ -17,11 +17,8 @@ if TYPE_CHECKING:
 
 Models = Literal["global", "local", "both", "body"]
 MODELS: dict[Models, tuple[Model, ...]] = {
-    "global": ("global",),
-    "local": ("local",),
-    "both": ("global", "local"),
-    "body": ("body",),
-}
+    "global": ("global",), "local": ("local",), "both": ("global", "local"), "body": ("body",),
+}  # fmt: skip
 SURFACE, ROLL = PIPELINE.surface, RollParams()
 USUAL = next(name for name, models in MODELS.items() if models == tuple(run.model for run in PIPELINE.roll))
 
