@@ -12,6 +12,8 @@ from tiskel import Inputs, Plan, PlanParams, RollParams, TiskelError, plan_roll,
 from tiskel.rolling.ambient import Ground, frame_about
 from tiskel.rolling.courses import clock, tight_centres
 from tiskel.rolling.many import Poses, roll_many
+from tiskel.rolling.reachable import Standing
+from tiskel.rolling.second import Surroundings
 from tiskel.rolling.sphere import rotation_of
 from tiskel.surfaces.implicit import projected
 from tiskel.surfaces.implicit_bodies import Capsule, Plane, Sphere, Torus, Union, y_of_capsules
@@ -61,6 +63,7 @@ def test_the_way_around_a_sphere_is_a_great_circle() -> None:
     assert plan.run.path_object == pytest.approx(np.arccos(-0.6), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_ways_are_looked_at_until_one_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
     """Around what is too tight ways slide on by less than a radius a look: after eight looks there was no plan."""
     angles = np.linspace(-0.7, 0.7, 13)
@@ -144,6 +147,15 @@ def test_what_cannot_be_is_refused_for_the_true_reason(body: Any, changed: dict[
     with pytest.raises(TiskelError, match=said) as told:
         plan_roll(body, PlanParams(**{**p, **changed}))
     assert len(str(told.value)) <= 300
+
+
+def test_the_sphere_that_would_fit_does() -> None:
+    """In a tunnel of radius 1, of 0.97: it was told that less than 1 would fit."""
+    for radius, fits in ((0.97, False), (0.935, True)):
+        ground = Ground(Torus(5.0, 1.0), -1.0, radius)
+        why = Standing(ground, Surroundings.of(ground), np.zeros((0, 4))).why_not(np.array([6.0, 0, 0]))
+        assert (why == "") == fits
+        assert fits or "one of less than 0.94 would fit" in why
 
 
 @pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"radius": -1.0}, {"attitude": (0, 0, 0, 0)}, {"avoid": ((1, 2),)}])

@@ -76,7 +76,7 @@ class Standing:
         _, z, shape = self.ground.touches(place[None])
         least = float(least_curvature(shape)[0])
         if not least * self.ground.radius + 1 > FITS:
-            return f"the surface bends as sharply as the sphere; one of less than {-1 / least:.4g} would fit"
+            return f"the surface bends as sharply as the sphere; one of less than {(FITS - 1) / least:.4g} would fit"
         if not self.avoids(place[None] + self.ground.radius * z)[0]:
             return "it would lie in a ball that is to be avoided"
         return "another part of the surface would lie in it"
