@@ -21,16 +21,16 @@ Second = Annotated[Path, typer.Argument(metavar="OTHER", help="Another of the sa
 
 @common
 def compare(first: First, second: Second, as_json: o.AsJson = False) -> None:
-    """Say whether two skeletons of one body are alike: the same graph, the same ends, how far they are apart.
+    """Say whether two skeletons of one body are alike: the same graph, ends and length, how far apart both ways.
 
     Of a body that was scanned twice, in one frame; distances in local radii need files with radii. A table on a
     terminal, JSON otherwise: `tiskel compare monday.ply tuesday.ply | jq .same_graph`
     """
-    from tiskel.metrics.repeatability import repeatability
+    from tiskel.metrics.comparison import compare as held_against
 
     facts: dict[str, Any] = {"files": [first.name, second.name]}
     with shown(reading(first, second)):
-        facts |= repeatability(_curve(first), _curve(second)).as_dict()
+        facts |= held_against(_curve(first), _curve(second)).as_dict()
     if as_json or not sys.stdout.isatty():
         typer.echo(json.dumps(facts, allow_nan=False))
         return
@@ -39,7 +39,12 @@ def compare(first: First, second: Second, as_json: o.AsJson = False) -> None:
     from tiskel.metrics.tables import said
 
     names = " and ".join(facts.pop("files"))
-    Console().print(console.table(names, ["what", "value"], [[key, said(value)] for key, value in facts.items()]))
+    rows = [[key, said(value)] for key, value in facts.items() if not isinstance(value, (dict, list))]
+    for one, length in zip((first, second), facts["lengths"], strict=True):
+        rows.append([f"length of {one.name}", said(length)])
+    for way, words in (("there", f"{first.name} to {second.name}"), ("back", f"{second.name} to {first.name}")):
+        rows += [[f"{words}, {key}", said(value)] for key, value in (facts[way] or {}).items()]
+    Console().print(console.table(names, ["what", "value"], rows))
 
 
 def _curve(path: Path) -> "CurveGraph":

@@ -142,4 +142,7 @@ def test_a_skeleton_is_like_itself_and_near_another(tiskel: Runner, skeletons: l
     assert document["radii_95"] == pytest.approx(0, abs=1e-9)
     other = json.loads(tiskel("compare", *skeletons).stdout)
     assert 0 < other["radii_95"] < 2
+    assert 0 < other["there"]["mean"] <= other["there"]["p95"] <= other["there"]["largest"]
+    assert other["lengths"][0] == document["lengths"][1]
+    assert other["lengths"][1] != document["lengths"][1]
     assert "no file nowhere.ply" in one_error_line(tiskel("compare", "gls.ply", "nowhere.ply"))
