@@ -92,9 +92,9 @@ def test_raw_results_count_as_long_as_their_code_says_the_same(
         if path not in reached:
             reached.add(path)
             waiting += kept.imported(path)
-    names = {path.name for path in reached}
-    assert {"gls.py", "lbc.py", "laplacian.py", "subjects.py", "make.py"} <= names
-    assert not {"roll.py", "evaluate.py", "show.py"} & names
+    names = {"/".join(path.parts[-2:]) for path in reached}
+    assert {"laplacian/gls.py", "kernels/laplacian.py", "dissertation/subjects.py", "gallery/make.py"} <= names
+    assert not {"rolling/roll.py", "metrics/evaluate.py", "viewer/show.py"} & names
 
 
 def test_a_difference_comes_of_a_free_choice_or_is_left_unexplained(module: Callable[[str], ModuleType]) -> None:
