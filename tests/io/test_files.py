@@ -2,6 +2,7 @@
 
 import io
 import json
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,6 +32,7 @@ from tiskel import (
 from tiskel.io.clouds import dump_cloud
 from tiskel.io.exports import EXPORTS, to_swc
 from tiskel.io.formats import WRITTEN, numpy_arrays, ply, text
+from tiskel.io.formats.ply import PLY
 from tiskel.io.stages.contraction import dump_contraction
 from tiskel.io.stages.skeleton import dump_skeleton
 
@@ -131,6 +133,45 @@ def test_ply_of_every_layout_with_normals_colours_and_an_empty_face_list(
     np.testing.assert_array_equal(cloud.points[:, 0], np.arange(20))
     assert set(cloud.properties) == {"nx", "red", "quality"}
     assert cloud.warnings == ()
+
+
+def mesh_of(faces: list[list[int]], order: str) -> bytes:
+    """Six corners and these faces in binary PLY, a quality before the corners of each face, a colour after."""
+    table = np.zeros(6, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4")])
+    table["x"], table["y"] = np.arange(6), np.arange(6) % 2
+    face = np.empty(len(faces), dtype=[("quality", "f4"), ("vertex_indices", object), ("red", "u1")])
+    for row, corners in zip(face, faces, strict=True):
+        row["vertex_indices"] = np.array(corners, np.int32)
+    out = io.BytesIO()
+    PlyData([PlyElement.describe(table, "vertex"), PlyElement.describe(face, "face")], byte_order=order).write(out)
+    return out.getvalue()
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_faces_of_one_length_are_read_at_once_others_one_by_one(order: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    triangles = [[0, 1, 2], [1, 2, 3], [3, 4, 5]]
+    mixed = PLY.read(mesh_of([*triangles, [0, 1, 2, 3]], order), "mixed.ply")
+    assert mixed.faces.tolist() == [*triangles, [0, 1, 2], [0, 2, 3]]
+    first = PLY.read(mesh_of([[0, 1, 2, 3], *triangles], order), "first.ply")
+    assert first.faces.tolist() == [[0, 1, 2], [0, 2, 3], *triangles]
+    data = mesh_of(triangles, order)
+    with pytest.raises(TiskelError, match="follow the last row"):
+        PLY.read(data + b"more", "long.ply")
+    with pytest.raises(TiskelError, match="early end-of-file"):
+        PLY.read(data[:-1], "short.ply")
+    monkeypatch.setattr(PlyData, "read", None)  # of plyfile, which makes an object of every face
+    assert PLY.read(data, "even.ply").faces.tolist() == triangles
+    with pytest.raises(TiskelError, match="not callable"):
+        PLY.read(mesh_of([[0, 1, 2], [0, 1, 2, 3]], order), "mixed.ply")
+
+
+def test_a_mesh_takes_less_than_ten_times_its_file() -> None:
+    data = mesh_of([[0, 1, 2]] * 30_000, "<")
+    tracemalloc.start()
+    PLY.read(data, "large.ply")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10 * len(data)
 
 
 def write_mesh(path: Path) -> None:

@@ -22,6 +22,7 @@ from tiskel.io import ply
 from tiskel.io.clouds import load_cloud
 from tiskel.io.formats import format_of, text
 from tiskel.io.limits import GZIP
+from tiskel.io.ply_tables import HEADER_END
 from tiskel.io.streams import STANDARD
 from tiskel.io.text_pieces import text_pieces
 
@@ -130,7 +131,7 @@ def _first_bytes(path: Path, packed: bool = False) -> bytes:
 
 def _ply_rows(start: bytes) -> tuple[np.dtype[Any], int, int] | None:
     """Return type, number and beginning of the rows with x, y and z; None where it is no binary cloud."""
-    if not start.startswith(ply.MAGIC) or ply.HEADER_END not in start:
+    if not start.startswith(ply.MAGIC) or HEADER_END not in start:
         return None
     stream = io.BytesIO(start)
     try:

@@ -8,17 +8,18 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
+from plyfile import PlyData, PlyElement, PlyParseError
 
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
+from tiskel.io.ply_tables import HEADER_END, has_lists, read_tables, surplus
 from tiskel.io.streams import Bytes
 from tiskel.version import version
 
 Columns = Mapping[str, npt.NDArray[Any]]
 MAGIC = b"ply"
 SCALAR, QUALITY = "scalar_", "quality"  #: names of columns that CloudCompare and MeshLab show as colours
-HEADER_END, HEADER_REST = b"end_header", 12  #: the last line of a header, and its length with any line ending
+HEADER_REST = 12  #: bytes of the last line of a header, with any line ending
 FORMAT = 2  #: of the stage files; 1 is still read
 SMALLEST_ROW = 1  # byte; no element of a binary file can hold more rows than the file has bytes
 
@@ -46,50 +47,20 @@ def parse(data: Bytes, name: str) -> PlyData:
                 raise TiskelError(
                     f"{name}: the header promises {element.count} rows of {element.name}, the file is smaller"
                 )
-        if ply.text or _has_lists(ply.elements):
+        end = -1 if ply.text else read_tables(ply, data, stream.tell())
+        if end < 0:
             stream = io.BytesIO(data)
             with np.errstate(over="ignore"):  # beyond float32 is not finite, as other rows may be
                 ply = PlyData.read(stream)
-            rest = b"" if ply.text else stream.read()
-        else:
-            rest = data[_read_tables(ply, data, stream.tell()) :]
+        rest = b"" if ply.text else data[end if end >= 0 else stream.tell() :]
     except PlyParseError as error:
         raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
     except (ValueError, MemoryError, UnicodeDecodeError, OverflowError, TypeError, KeyError, EOFError) as error:
         raise TiskelError(f"{name} is not a valid PLY file: {error}; export it again") from None
-    surplus = _surplus(ply, data, rest)
-    if surplus:
-        raise TiskelError(f"{name}: {surplus} follow the last row that the header promises; export it again")
+    more = surplus(ply, data, rest)
+    if more:
+        raise TiskelError(f"{name}: {more} follow the last row that the header promises; export it again")
     return ply
-
-
-def _has_lists(elements: Sequence[PlyElement]) -> bool:
-    """Tell whether rows have different lengths somewhere, so that a table is not its bytes."""
-    return any(isinstance(kind, PlyListProperty) for element in elements for kind in element.properties)
-
-
-def _read_tables(ply: PlyData, data: Bytes, start: int) -> int:
-    """Fill the elements of a binary file without lists, each at once; plyfile reads a stream row by row.
-
-    The rows begin at start; where they end is returned. The tables are views of
-    the data, not to be written to.
-    """
-    for element in ply.elements:
-        kind = element.dtype(ply.byte_order)
-        if start + element.count * kind.itemsize > len(data):
-            raise PlyParseError(f"element {element.name!r}: early end-of-file")
-        element.data = np.frombuffer(data, kind, element.count, start)
-        start += element.count * kind.itemsize
-    return start
-
-
-def _surplus(ply: PlyData, data: Bytes, rest: bytes) -> str:
-    """Return what the file holds beyond the rows of its header, in words; nothing where it is as promised."""
-    if ply.text:
-        rows = [line for line in bytes(data).split(HEADER_END, 1)[1].splitlines()[1:] if line.strip()]
-        more = len(rows) - sum(element.count for element in ply.elements)
-        return f"{more} rows" if more > 0 else ""
-    return f"{len(rest)} bytes" if rest.strip() else ""
 
 
 def element(name: str, columns: Columns, lists: Mapping[str, tuple[str, str]] | None = None) -> PlyElement:
@@ -139,7 +110,7 @@ def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -
     everything = {"format": FORMAT, **facts}
     comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in everything.items()]
     file = PlyData(elements, text=False, byte_order="<", comments=comments)
-    if _has_lists(elements):
+    if has_lists(elements):
         out = io.BytesIO()
         file.write(out)
         return out.getvalue()
