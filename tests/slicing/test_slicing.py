@@ -29,6 +29,7 @@ from tiskel.io.mesh_file import dump_mesh
 from tiskel.io.ply import parse
 from tiskel.io.stages.surface import dump_surfaces, parse_surfaces
 from tiskel.params import ShapeParams, SurfaceParams
+from tiskel.slicing.body_mesh import tubes_mesh
 from tiskel.slicing.coverage import distances_to_surfaces
 from tiskel.slicing.cutter import middle_of, places_of
 from tiskel.slicing.doubts import misfit
@@ -320,6 +321,22 @@ def test_the_mesh_file_opens_elsewhere(banana: Surfaces) -> None:
     assert loaded.is_watertight
     assert loaded.volume > 0
     assert len(parse(dump_mesh(mesh), "m.ply")["face"].data) == len(mesh.triangles)
+
+
+def test_corners_of_tubes_say_where_they_are_and_how_the_surface_bends() -> None:
+    """Of a torus of 0.7 and 0.2; u and v give the corners again, but for the middles of caps."""
+    torus, banana = (fit_surface(skeleton(name)) for name in ("torus", "banana"))
+    mesh = tubes_mesh(Surfaces((torus[0], banana[0]), {}, torus.cloud), caps=True)
+    known = parse(dump_mesh(mesh), "m.ply")["vertex"].data
+    one, other = (known[known["branch"] == number] for number in (0, 1))
+    np.testing.assert_allclose(one["radius"], 0.2, rtol=0.01)
+    np.testing.assert_allclose(one["curvature_max"], 1 / 0.2, rtol=0.05)
+    assert one["curvature_min"].min() == pytest.approx(-1 / 0.5, rel=0.1)
+    inner = other[np.isfinite(other["u"])]
+    assert len(other) - len(inner) == 2
+    corners = np.stack(banana[0].jet(inner["u"], inner["v"]).f, axis=1)
+    np.testing.assert_allclose(np.stack([inner[axis] for axis in "xyz"], axis=1), corners, atol=1e-9)
+    np.testing.assert_array_equal(one["scalar_radius"], one["radius"].astype(one["scalar_radius"].dtype))
 
 
 def test_distances_to_a_mesh_are_those_to_its_triangles(banana: Surfaces) -> None:

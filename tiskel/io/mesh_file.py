@@ -27,7 +27,7 @@ def dump_mesh(mesh: Mesh, source: dict[str, str] | None = None) -> bytes:
     Parameters
     ----------
     mesh : Mesh
-        Triangles, counter-clockwise seen from outside; their trust, where known, is a property of the vertices.
+        Triangles, counter-clockwise seen from outside; trust and further fields are properties of the vertices.
         Of a whole body, vertices have nx, ny, nz, curvature_min and curvature_max (1 / length), too. All of it but
         normals also under the names that CloudCompare and MeshLab know, see :func:`tiskel.io.ply.scalars`.
     source : dict, optional
@@ -46,7 +46,8 @@ def _more(mesh: Mesh) -> dict[str, Any]:
     """Return what else is known about the vertices."""
     trust: dict[str, npt.NDArray[Any]] = {} if mesh.trust is None else {"trust": mesh.trust}
     if not isinstance(mesh, BodyMesh):
-        return trust | ply.scalars(trust, "trust")
+        fields = {**mesh.fields, **trust}
+        return fields | ply.scalars(fields, "trust")
     known: dict[str, npt.NDArray[Any]] = {
         "curvature_min": mesh.curvatures[:, 0],
         "curvature_max": mesh.curvatures[:, 1],

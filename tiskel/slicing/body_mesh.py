@@ -1,6 +1,6 @@
 """The surface of a whole body as a closed triangle mesh, with what it is like at every vertex."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
@@ -12,7 +12,7 @@ from tiskel.geometry.marching import Found, marched
 from tiskel.geometry.oriented import OrientedCloud
 from tiskel.geometry.spacing import spacings_from
 from tiskel.slicing.fitted import Surfaces
-from tiskel.slicing.mesh import Mesh, joined_mesh, surface_mesh
+from tiskel.slicing.mesh import Mesh, fields_of, joined_mesh, surface_mesh
 from tiskel.surfaces.implicit import Tangency, tangency
 from tiskel.surfaces.patches import BodySurface
 
@@ -102,8 +102,13 @@ def mesh_of(surfaces: Surfaces, edge: float | None = None) -> Mesh:
 
 
 def tubes_mesh(surfaces: Surfaces, caps: bool = False) -> Mesh:
-    """Return the meshes of all tubes as one, their ends closed or open."""
-    return joined_mesh([surface_mesh(tube, caps=caps) for tube in surfaces])
+    """Return the meshes of all tubes as one, their ends closed or open, with branch, u, v, radius and curvatures."""
+    return joined_mesh(
+        [
+            replace(surface_mesh(tube, caps=caps), fields=fields_of(tube, number, caps=caps))
+            for number, tube in enumerate(surfaces)
+        ]
+    )
 
 
 def _without_bubbles(body: BodySurface, found: Found) -> Found:

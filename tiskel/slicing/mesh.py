@@ -1,8 +1,10 @@
 """The fitted surface as a triangle mesh, its distance to the cloud, and what its slices measure."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import TINY, Edges, Labels, Numbers, Points, Stack
@@ -10,6 +12,7 @@ from tiskel.geometry.bspline import BSplineCurve
 from tiskel.geometry.ellipse import fit_ellipse
 from tiskel.slicing.fitted import BRIDGED, FittedSurface
 from tiskel.slicing.sections import Section
+from tiskel.surfaces.forms import forms_of, principal_curvatures
 from tiskel.surfaces.tube import V_STOP, Tube, radius_of
 
 AROUND, PER_SLICE = 96, 3  # vertices around the curve, and rows of them per slice
@@ -29,11 +32,14 @@ class Mesh:
     trust : (p,) uint8 or None
         Of every corner: 2 where points say that it is there, 1 on a side of which there are none, 0 where slices were
         bridged and on caps; None where nothing is known of it.
+    fields : mapping of str to (p,) array
+        Further values of every corner, see :func:`fields_of`.
     """
 
     vertices: Points
     triangles: Edges
     trust: Labels | None = None
+    fields: Mapping[str, npt.NDArray[np.generic]] = field(default_factory=dict)
 
 
 def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
@@ -68,6 +74,34 @@ def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
     return Mesh(np.concatenate(vertices), np.concatenate(triangles).astype(np.int32), trust.astype(np.uint8))
 
 
+def fields_of(surface: FittedSurface, number: int = 0, *, caps: bool = False) -> dict[str, npt.NDArray[np.generic]]:
+    """Return what is known at every vertex of the mesh of a surface.
+
+    Parameters
+    ----------
+    surface : FittedSurface
+        The surface.
+    number : int
+        Its own, among several.
+    caps : bool
+        As in :func:`surface_mesh`; values in the middle of caps are NaN.
+
+    Returns
+    -------
+    dict of str to (p,) array
+        branch, the number; u and v, radians; radius, from the curve, in the input's unit; curvature_min and
+        curvature_max, 1 / length, positive where convex.
+    """
+    u, v = np.meshgrid(np.arange(AROUND) / AROUND * 2 * np.pi, row_places(surface))
+    jet = surface.jet(u, v)
+    out = np.stack(jet.f, axis=-1) - surface.tube.curve(v.ravel()).reshape(*v.shape, 3)
+    least, most = principal_curvatures(forms_of(jet))
+    found = {"u": u, "v": v, "radius": np.linalg.norm(out, axis=-1), "curvature_min": least, "curvature_max": most}
+    more = 2 if caps and not surface.tube.closed else 0
+    known = {name: np.append(np.ravel(values), np.full(more, np.nan)) for name, values in found.items()}
+    return {"branch": np.full(u.size + more, number, np.int32), **known}
+
+
 def row_places(surface: FittedSurface) -> Numbers:
     """Return v (r,) of the rows of vertices of its mesh."""
     return np.linspace(0, V_STOP, PER_SLICE * len(surface.sections), endpoint=not surface.tube.closed)
@@ -79,7 +113,9 @@ def joined_mesh(meshes: list[Mesh]) -> Mesh:
     triangles = [mesh.triangles + offset for mesh, offset in zip(meshes, offsets[:-1], strict=True)]
     known = [mesh.trust for mesh in meshes if mesh.trust is not None]
     trust = np.concatenate(known) if len(known) == len(meshes) else None
-    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles).astype(np.int32), trust)
+    fields = {name: np.concatenate([mesh.fields[name] for mesh in meshes]) for name in meshes[0].fields}
+    vertices = np.concatenate([mesh.vertices for mesh in meshes])
+    return Mesh(vertices, np.concatenate(triangles).astype(np.int32), trust, fields)
 
 
 def distances_to_mesh(points: Points, mesh: Mesh) -> Numbers:
