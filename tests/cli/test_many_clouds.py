@@ -110,7 +110,6 @@ def test_ctrl_c_ends_everything_and_the_rest_can_be_done_later(scans: Path, tisk
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("--stages", "skeleton,view"), "no stage 'view'"),
         (("--shard", "5/4"), "from 1 to N"),
         (("--shard", "half"), "such as 1/4"),
         (("--timeout", "0"), "timeout must be a positive number"),
@@ -121,4 +120,12 @@ def test_wrong_settings_are_refused_before_anything_is_made(
 ) -> None:
     (tmp_path / "a.xyz").write_text("0 0 0\n")
     assert complaint in one_error_line(tiskel("batch", "a.xyz", "-o", "out", *words))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_stage_that_there_is_not_is_wrong_usage(tiskel: Runner, tmp_path: Path) -> None:
+    (tmp_path / "a.xyz").write_text("0 0 0\n")
+    refused = tiskel("batch", "a.xyz", "-o", "out", "--stages", "skeleton,view")
+    assert refused.returncode == 2
+    assert b"'view' is not one of" in refused.stderr
     assert not (tmp_path / "out").exists()
