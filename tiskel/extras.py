@@ -45,7 +45,7 @@ def extra(module: str, what: str) -> Any:
     >>> extra("a_package_that_nobody_has.drawing", "a picture")
     Traceback (most recent call last):
         ...
-    tiskel.kernels.errors.TiskelError: a picture needs a_package_that_nobody_has; pip install 'tiskel[full]'
+    tiskel.errors.TiskelError: a picture needs a_package_that_nobody_has; pip install 'tiskel[full]'
     """
     package = module.partition(".")[0]
     try:

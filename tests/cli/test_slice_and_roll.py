@@ -216,7 +216,7 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
     refused: list[tuple[tuple[object, ...], str]] = [
         (("s.ply", "--interval", 0.9, "--no-body"), "too short for 4 slices"),
         (("s.ply", "--branch", 7), "there is no branch 7"),
-        (("s.ply", "--m", "up"), "--m needs 3 numbers"),
+        (("s.ply", "--m", "1,2"), "--m needs 3 numbers"),
         (("f.json",), "is no"),
     ]
     for options, said in refused:
