@@ -24,7 +24,7 @@ OTHERS = {  # options of other programs that the pages name
     "--group-add", "--array", "--cpus-per-task", "--mem", "--signal", "--sshlogin", "--rm", "--user", "--wheel-dir",
     "--constraint", "--no-index", "--find-links", "--host", "--nthreads", "--only", "--data", "--clouds", "--stale",
     "--version", "--help", "--install-completion", "--resolution", "--extra", "--strict",
-    "--cases", "--state", "--write", "--parts", "--quit",
+    "--chapter", "--cases", "--state", "--write", "--parts", "--quit",
 }  # fmt: skip
 EXTERNAL = {"https://keepachangelog.com/en/1.1.0/"}  # not fetched here: look at them before a release
 
