@@ -26,6 +26,7 @@ WIDTH, OVERVIEW, CLOSE, LOWEST, LOWER = 15.0, 6.0, 4.5, 4.2, 2.6  # inches
 NET, RINGS = 3.0, 25  # of the way's length: how far the net goes on beyond it; lines of the net
 BALL = colour_of("ball")
 AROUND = 1.6  # sphere radii of room about the spheres of the close-up
+TICKS = 4  # on an axis of the close-up, at most: numbers of far clouds are long
 
 
 def rolling_picture(
@@ -136,6 +137,7 @@ def _close_up(
 ) -> None:
     """Draw the ways of the contact, turned away from the eye dotted, and the spheres at the start and at the end."""
     cloud_panel(panel, sight, frame)
+    panel.locator_params(nbins=TICKS)
     if isinstance(surface, FittedSurface):
         _net(panel, surface, runs, sight)
     for r, colour in zip(runs, COLOURS, strict=False):
