@@ -157,7 +157,7 @@ def plan_roll(
             if len(tight) == 0 or rolled == TRIES:
                 break
         standing = standing.without(tight)
-    raise TiskelError(f"no plan for a sphere of radius {ground.radius:.4g}: {reasons[-1] if reasons else TIGHT}")
+    raise TiskelError(f"no plan found for a sphere of radius {ground.radius:.4g}: {reasons[-1] if reasons else TIGHT}")
 
 
 def _begun(ground: Ground, start: Numbers, params: PlanParams) -> Poses:
