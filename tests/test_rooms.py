@@ -23,7 +23,7 @@ ALLOWED = {
     "wording": "",
     "shown": "tiskel",  # results show themselves in notebooks
     "progress": "",
-    "params": "errors",
+    "params": "errors wording",
     "arrays": "errors params",
     "geometry": "errors arrays params kernels shown",
     "preprocess": GEOMETRY,

@@ -41,7 +41,19 @@ def meant(word: str, known: Iterable[str]) -> str:
     >>> meant("unicorn", ["banana", "hand"])
     ''
     """
+    near = nearest(word.lower(), known)
+    return f" Did you mean {near!r}?" if near else ""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known word that is most like a misspelt one; empty where none is like it.
+
+    Examples
+    --------
+    >>> from tiskel.wording import nearest
+    >>> nearest("intervall", ["interval", "gap"]), nearest("colour", ["interval"])
+    ('interval', '')
+    """
     from difflib import get_close_matches
 
-    near = get_close_matches(word.lower(), list(known), n=1)
-    return f" Did you mean {near[0]!r}?" if near else ""
+    return next(iter(get_close_matches(word, list(known), n=1)), "")

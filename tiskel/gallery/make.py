@@ -1,5 +1,7 @@
 """Clouds of named shapes, clean or degraded the way scans are."""
 
+from collections.abc import Iterable
+
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -48,9 +50,7 @@ def shape_graph(name: str) -> ConeGraph:
     (1, 0)
     """
     if name not in SHAPES:
-        raise TiskelError(
-            f"no shape is called {name!r};{meant(name, SHAPES).lower()} choose one of {', '.join(SHAPES)}"
-        )
+        raise _unknown(name, SHAPES)
     return SHAPES[name]()
 
 
@@ -81,8 +81,13 @@ def named_shape(name: str) -> Shape:
     """
     every = {name: make for group in GROUPS.values() for name, make in group.items()}
     if name not in every:
-        raise TiskelError(f"no shape is called {name!r};{meant(name, every).lower()} choose one of {', '.join(every)}")
+        raise _unknown(name, every)
     return every[name]()
+
+
+def _unknown(name: str, known: Iterable[str]) -> TiskelError:
+    """Return the error for a name that no shape has."""
+    return TiskelError(f"no shape is called {name!r};{meant(name, known).lower()} choose one of {', '.join(known)}")
 
 
 def make_shape(

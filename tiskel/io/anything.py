@@ -15,6 +15,7 @@ from tiskel.io.clouds import Cloud, parse_cloud
 from tiskel.io.curves import Curve, parse_curve
 from tiskel.io.formats import format_of
 from tiskel.io.limits import unpacked
+from tiskel.io.ply_tables import HEADER_END
 from tiskel.io.stages.contraction import parse_contraction
 from tiskel.io.stages.path import RolledPath, is_path, parse_paths
 from tiskel.io.stages.skeleton import parse_skeleton
@@ -125,7 +126,7 @@ def _lines_alone(data: bytes) -> bool:
 
 def _has_edges(data: bytes) -> bool:
     """Return whether a PLY file has edges and no faces."""
-    header = data[:HEADER].split(b"end_header")[0] if data.startswith(ply.MAGIC) else b""
+    header = data[:HEADER].split(HEADER_END)[0] if data.startswith(ply.MAGIC) else b""
     return b"element edge" in header and b"element face" not in header
 
 

@@ -16,6 +16,7 @@ from tiskel.io.formats import numpy_arrays, text
 from tiskel.io.formats.base import short
 from tiskel.io.lines import documents, dxf, plain, vtp
 from tiskel.io.lines.base import Lines, lines, radii_of
+from tiskel.io.ply_tables import HEADER_END
 from tiskel.io.stages.skeleton import parse_skeleton
 from tiskel.io.stages.which import stage_of
 from tiskel.io.streams import STANDARD, read_bytes
@@ -139,7 +140,7 @@ def holds_curve(data: bytes, source: str | Path) -> bool:
     """Tell whether a file that may be a cloud or a curve holds edges: by its suffix, or by what it says."""
     kind = Path(source).suffix.lower() if str(source) != STANDARD else _kind(data)
     if kind in (".ply", ".obj", ".csv", ".tsv", ".txt"):
-        head = data[: max(data.find(b"end_header"), 0)]
+        head = data[: max(data.find(HEADER_END), 0)]
         edged = b"\nelement edge" in head and stage_of(data) != "contraction"
         return (
             edged

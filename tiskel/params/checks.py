@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from math import inf, isfinite
 
 from tiskel.errors import TiskelError
+from tiskel.wording import nearest
 
 LARGEST = 1e308  #: a setting; larger whole numbers are no floating point numbers
 
@@ -63,7 +64,5 @@ def meant(name: str, known: Iterable[str]) -> str:
     >>> meant("intervall", ["interval", "gap"]), meant("colour", ["interval"])
     ('; did you mean interval?', '')
     """
-    from difflib import get_close_matches
-
-    near = get_close_matches(name, list(known), 1)
-    return f"; did you mean {near[0]}?" if near else ""
+    near = nearest(name, known)
+    return f"; did you mean {near}?" if near else ""

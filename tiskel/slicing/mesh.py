@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Edges, Labels, Numbers, Points, Stack
+from tiskel.arrays import TINY, Edges, Labels, Numbers, Points, Stack, Table
 from tiskel.geometry.bspline import BSplineCurve
 from tiskel.geometry.ellipse import fit_ellipse
 from tiskel.slicing.fitted import BRIDGED, FittedSurface
@@ -57,7 +57,7 @@ def surface_mesh(surface: FittedSurface, *, caps: bool = False) -> Mesh:
     Mesh
     """
     closed = surface.tube.closed
-    u, v = np.meshgrid(np.arange(AROUND) / AROUND * 2 * np.pi, row_places(surface))
+    u, v = _places(surface)
     rows, grid = len(v), np.stack(surface.jet(u, v).f, axis=-1)
     number = np.arange(rows * AROUND, dtype=np.int32).reshape(rows, AROUND)
     after = np.roll(number, -1, axis=0) if closed else number[1:]
@@ -92,7 +92,7 @@ def fields_of(surface: FittedSurface, number: int = 0, *, caps: bool = False) ->
         branch, the number; u and v, radians; radius, from the curve, in the input's unit; curvature_min and
         curvature_max, 1 / length, positive where convex.
     """
-    u, v = np.meshgrid(np.arange(AROUND) / AROUND * 2 * np.pi, row_places(surface))
+    u, v = _places(surface)
     jet = surface.jet(u, v)
     out = np.stack(jet.f, axis=-1) - surface.tube.curve(v.ravel()).reshape(*v.shape, 3)
     least, most = principal_curvatures(forms_of(jet))
@@ -100,6 +100,12 @@ def fields_of(surface: FittedSurface, number: int = 0, *, caps: bool = False) ->
     more = 2 if caps and not surface.tube.closed else 0
     known = {name: np.append(np.ravel(values), np.full(more, np.nan)) for name, values in found.items()}
     return {"branch": np.full(u.size + more, number, np.int32), **known}
+
+
+def _places(surface: FittedSurface) -> tuple[Table, Table]:
+    """Return u and v (r, AROUND) of the vertices of its mesh, a row for each place along the curve."""
+    around, along = np.meshgrid(np.arange(AROUND) / AROUND * 2 * np.pi, row_places(surface))
+    return around, along
 
 
 def row_places(surface: FittedSurface) -> Numbers:

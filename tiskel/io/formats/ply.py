@@ -8,9 +8,9 @@ from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.formats.base import NO_FACES, Format, Parsed, short
 from tiskel.io.formats.faces import fans
+from tiskel.io.ply_tables import HEADER_END
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-END = b"end_header"
 HOLDERS = ("vertex", "point", "points", "vertices")  #: elements that programs keep points in
 NOT_ASCII = bytes(range(128)) + b"?" * 128  #: table that puts a question mark for every byte beyond ASCII
 NAN_OF_WINDOWS = re.compile(rb"[+-]?nan\([a-z]+\)")
@@ -52,7 +52,7 @@ def write(points: Points) -> bytes:
 def _tidy(data: bytes) -> bytes:
     """Return the file without a byte order mark, its header in ASCII and its not-a-numbers as C writes them."""
     data = data.removeprefix(BYTE_ORDER_MARK)
-    header = data[: max(data.find(END), 0)]
+    header = data[: max(data.find(HEADER_END), 0)]
     if not header.isascii():
         data = header.translate(NOT_ASCII) + data[len(header) :]
     return NAN_OF_WINDOWS.sub(b"nan", data) if b"format ascii" in header and b"nan(" in data else data
