@@ -30,7 +30,7 @@ COMMANDS = {
     ),
     "compare": Entry(
         "compare", "compare", JUDGE,
-        "Say whether two skeletons of one body are alike: the same graph, the same ends, how far they are apart.",
+        "Say whether two skeletons of one body are alike: the same graph, ends and length, how far apart both ways.",
     ),
     "slice": Entry(
         "slice", "slice_command", SURFACE,
