@@ -4,8 +4,7 @@
 
 Runs the fuzzer (tests/fuzz) until every reader has had so many cases, those of
 earlier calls with the same --state included, and reads the files of TISKEL_CASES,
-each in a process of its own. Readers with a process for every file get a
-hundredth of the cases.
+each in a process of its own.
 """
 
 import argparse
@@ -25,10 +24,6 @@ from reference.forked import outcomes
 
 CASES = Path(os.environ.get("TISKEL_CASES", ROOT / ".." / "shared" / "cases"))
 PAGE = ROOT / "docs" / "reliability.md"
-APART, LESS = (
-    ("cloud.laz", "cloud.e57", "stdin"),
-    100,
-)  #: readers with a process for each file, and how many fewer cases
 HEAD = """# How reliable reading is
 
 Written by `python benchmarks/reliability.py --cases N --state DIR --write`; rerun it after changes to a reader.
@@ -48,14 +43,13 @@ def fuzzed(state: Path, cases: int) -> list[str]:
     """Run the fuzzer and return a row for each reader."""
     rows = []
     for name in originals():
-        wanted = max(1, cases // LESS) if name in APART else cases
         words = [
             sys.executable,
             ROOT / "tests" / "fuzz" / "run.py",
             "--state",
             state,
             "--cases",
-            wanted,
+            cases,
             "--readers",
             name,
         ]

@@ -29,6 +29,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from fuzz.forked_reader import forks
 from fuzz.mutations import damaged
 from fuzz.originals import Reader, originals
 from tiskel import TiskelError
@@ -93,14 +94,15 @@ def run(name: str, first: int, stop: int, pipe: Connection) -> None:
     signal.signal(signal.SIGPROF, _alarm)
     warnings.simplefilter("error")
     found: list[tuple[int, str]] = []
-    for seed in range(first, stop):
-        faulthandler.dump_traceback_later(STUCK, exit=True)
-        if seed % BLOCK == 0:
-            pipe.send((seed, found))
-            found = []
-        data = damaged(files, seed)
-        if said := fault(read, data):
-            found.append((seed, said))
+    with forks(int(PATIENCE), FREE, PER_BYTE):
+        for seed in range(first, stop):
+            faulthandler.dump_traceback_later(STUCK, exit=True)
+            if seed % BLOCK == 0:
+                pipe.send((seed, found))
+                found = []
+            data = damaged(files, seed)
+            if said := fault(read, data):
+                found.append((seed, said))
     faulthandler.cancel_dump_traceback_later()
     pipe.send((stop, found))
 

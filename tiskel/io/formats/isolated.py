@@ -41,17 +41,23 @@ def read_apart(function: Callable[[bytes], Arrays], data: bytes, name: str, kind
     TiskelError
         Where the function raises, or the process dies.
     """
-    code = START.format(sys.path, function.__module__, function.__name__)
+    code, out, said = _in_a_process(function, data)
+    if code == 0:
+        with np.load(io.BytesIO(out), allow_pickle=False) as arrays:
+            return {key: arrays[key] for key in arrays.files}
+    lines = said.decode("utf-8", "replace").strip().splitlines()
+    reason = (lines[-1] if code == FAILED else lines[0]) if lines else f"its reader died ({code})"
+    raise TiskelError(f"{name} is not a valid {kind} file: {short(reason)}; export it again")
+
+
+def _in_a_process(function: Callable[[bytes], Arrays], data: bytes) -> tuple[int, bytes, bytes]:
+    """Call `main` in a new process; return its exit code and what stands on its standard output and error."""
     done = subprocess.run(
-        [sys.executable, "-c", code], input=data, capture_output=True, check=False,
+        [sys.executable, "-c", START.format(sys.path, function.__module__, function.__name__)],
+        input=data, capture_output=True, check=False,
         env={**os.environ, "RUST_BACKTRACE": "0", "OPENBLAS_NUM_THREADS": "1"},
     )  # fmt: skip
-    if done.returncode == 0:
-        with np.load(io.BytesIO(done.stdout), allow_pickle=False) as arrays:
-            return {key: arrays[key] for key in arrays.files}
-    lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
-    reason = (lines[-1] if done.returncode == FAILED else lines[0]) if lines else f"its reader died ({done.returncode})"
-    raise TiskelError(f"{name} is not a valid {kind} file: {short(reason)}; export it again")
+    return done.returncode, done.stdout, done.stderr
 
 
 def main(module: str, function: str) -> None:
