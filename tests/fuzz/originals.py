@@ -57,12 +57,12 @@ def _small(s: Skeleton) -> Skeleton:
 
 def _read_cloud(suffix: str, data: bytes) -> Any:
     plain, inner = unpacked(data, f"a{suffix}")
-    return format_of(inner, plain).read(plain, "a")
+    return format_of(inner, plain).parse(plain, "a")
 
 
 def _read_by_content(data: bytes) -> Any:
     plain, _ = unpacked(data, "stdin")
-    return format_of("stdin", plain, by_content=True).read(plain, "stdin")
+    return format_of("stdin", plain, by_content=True).parse(plain, "stdin")
 
 
 def _read_curve(name: str, data: bytes) -> Any:
@@ -90,12 +90,13 @@ def _clouds() -> dict[str, list[bytes]]:
                  + "".join(f"{x} {y} {z} .5\n" for x, y, z in rows).encode()],
     }  # fmt: skip
     properties = b"property float X\nproperty double y\nproperty float z\nend_header\n"
+    single = ply_file.dump([ply_file.element("vertex", ply_file.xyz(POINTS.astype(np.float32)))], "cloud", {})
     ascii_ply = b"ply\nformat ascii 1.0\ncomment H\xf6he\nelement vertex 30\n" + properties
     return text | {
         ".npy": [dump_cloud(POINTS, "a.npy"), table.getvalue()],
         ".npz": [npz.getvalue()],
         ".pcd": [pcd_bytes(layout) for layout in ("ascii", "binary", "binary_compressed")],
-        ".ply": [dump_cloud(POINTS, "a.ply"), ascii_ply + dump_cloud(POINTS, "a.xyz")],
+        ".ply": [dump_cloud(POINTS, "a.ply"), single, ascii_ply + dump_cloud(POINTS, "a.xyz")],
     }
 
 

@@ -4,6 +4,7 @@ import gzip
 import io
 import struct
 import tracemalloc
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ import pytest
 from reference.pcd import POINTS, pcd_bytes
 from tiskel import TiskelError, load_cloud
 from tiskel.io.clouds import parse_cloud
-from tiskel.io.formats import FORMATS, SUFFIXES, numpy_arrays, obj, off, ply, stl
+from tiskel.io.curves import parse_curve
+from tiskel.io.formats import FORMATS, SUFFIXES, format_of, numpy_arrays, obj, off, ply, stl
 
 
 def test_every_suffix_belongs_to_one_format() -> None:
@@ -198,6 +200,8 @@ MESHES_BROKEN = {
     "ragged.off": (b"OFF\n3 0 0\n0 0 0\n1 0 0 1\n0 1 0\n", "every vertex needs the same numbers"),
     "beyond.off": (b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 33\n", "names vertex 33, there are 3"),
     "endless.off": (b"OFF\n1 1 0\n0 0 0\n1 " + b"9" * 30 + b"\n", "a vertex beyond all numbers"),
+    "further.off": (b"OFF\n1 1 0\n0 0 0\n2 0 12000000000000000000\n", "a vertex beyond all numbers"),
+    "further.obj": (b"v 0 0 0\nf 1 12000000000000000000 1\n", "a vertex beyond all numbers"),
     "counts.off": (b"OFF\n3 x 0\n0 0 0\n", "no counts of vertices and faces"),
     "no rows.off": (b"OFF\n0 0 0\n", "holds no points"),
     "none.off": (b"4 4 0\n0 0 0\n", "does not begin with OFF"),
@@ -237,3 +241,28 @@ def test_stl_files_of_both_kinds_give_the_corners_of_their_facets() -> None:
         stl.read(text.replace("e+00", "e+e+00").encode(), "a.stl")
     with pytest.raises(TiskelError, match="no facets"):
         stl.read(bytes(84), "a.stl")
+
+
+def test_signalling_nans_of_single_precision_are_nans_without_a_warning() -> None:
+    rows = np.arange(12, dtype="<f4").reshape(4, 3)
+    rows.view("<u4")[1, 2] = 0x7FA00000  # an invalid operation to whoever makes it a float64
+    head = "ply\nformat binary_little_endian 1.0\nelement vertex 4\n"
+    head += "".join(f"property float {axis}\n" for axis in "xyz") + "end_header\n"
+    facets = b"".join(bytes(12) + facet.tobytes() + bytes(2) for facet in (rows[:3], rows[1:]))
+    table = io.BytesIO()
+    np.save(table, rows)
+    pcd = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA binary\n"
+    files = {
+        "a.ply": head.encode() + rows.tobytes(),
+        "a.stl": bytes(80) + struct.pack("<I", 2) + facets,
+        "a.npy": table.getvalue(),
+        "a.pcd": pcd.encode() + rows.tobytes(),
+    }
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for name, data in files.items():
+            parsed = format_of(name, data).parse(data, name)
+            assert np.isnan(parsed.points[1, 2])
+            assert np.isfinite(parsed.points[0]).all()
+        with pytest.raises(TiskelError, match=r"node 1 is at \[3.0, 4.0, nan\]"):
+            parse_curve(files["a.ply"], "a.ply")

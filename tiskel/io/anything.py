@@ -98,6 +98,7 @@ def read_anything(source: str | Path) -> Shown:
     return _cloud_or_mesh(data, source, name)
 
 
+@np.errstate(invalid="ignore")
 def _measures(data: bytes, name: str) -> MeasureFile:
     vertex: Any = ply.parse(data, name)["vertex"].data
     columns = {key: np.array(vertex[key], np.float64) for key in ply.own(vertex.dtype.names) if key not in "xyz"}
@@ -132,7 +133,7 @@ def _has_edges(data: bytes) -> bool:
 
 def _cloud_or_mesh(data: bytes, source: str | Path, name: str) -> Cloud | MeshFile:
     plain, inner = unpacked(data, name)
-    parsed = format_of(inner, plain, by_content=str(source) == STANDARD).read(plain, name)
+    parsed = format_of(inner, plain, by_content=str(source) == STANDARD).parse(plain, name)
     if len(parsed.faces):
         return MeshFile(name, parsed.points, parsed.faces)
     return parse_cloud(data, source)

@@ -186,7 +186,7 @@ def _parsed(data: bytes, inner: str, name: str, by_content: bool, columns: Seque
     """Return what the reader of the file's type makes of it."""
     kind = format_of(inner, data, by_content=by_content)
     if columns is None:
-        return kind.read(data, name)
+        return kind.parse(data, name)
     if kind.read is not text.read:
         raise TiskelError(f"{name}: columns are chosen in text, {kind.name} names its own; leave --columns out")
     return text.read(data, name, columns)

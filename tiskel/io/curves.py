@@ -100,6 +100,7 @@ def load_curve(source: str | Path) -> Curve:
     return parse_curve(read_bytes(source), source)
 
 
+@np.errstate(invalid="ignore")
 def parse_curve(data: bytes, source: str | Path) -> Curve:
     """Return the curve in the bytes of a file.
 

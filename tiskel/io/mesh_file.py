@@ -148,5 +148,5 @@ def parse_mesh(data: bytes, source: str | Path) -> Mesh | None:
     """
     name = "stdin" if str(source) == STANDARD else Path(source).name
     plain, inner = unpacked(data, name)
-    found = format_of(inner, plain, by_content=str(source) == STANDARD).read(plain, name)
+    found = format_of(inner, plain, by_content=str(source) == STANDARD).parse(plain, name)
     return Mesh(found.points, found.faces) if len(found.faces) else None

@@ -161,6 +161,7 @@ def source_of(data: bytes, stage: str, name: str) -> dict[str, str]:
 VERB = {"contraction": "contract", "skeleton": "skeleton"}
 
 
+@np.errstate(invalid="ignore")  # a signalling NaN is one like others
 def points_of(table: npt.NDArray[Any], names: Sequence[str] = ("x", "y", "z")) -> Points:
     """Return three named columns of a table of n rows as (n, 3) float64."""
     fields: Mapping[str, Any] = table.dtype.fields or {}

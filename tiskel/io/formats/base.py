@@ -81,3 +81,8 @@ class Format:
     read: Callable[[bytes, str], Parsed]
     write: Callable[[Points], bytes] | None = None
     sniff: Callable[[bytes], bool] = never
+
+    def parse(self, data: bytes, name: str) -> Parsed:
+        """Return what a file holds; numbers that float64 cannot hold are not finite, which is no warning."""
+        with np.errstate(all="ignore"):
+            return self.read(data, name)

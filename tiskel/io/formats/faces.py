@@ -49,7 +49,10 @@ def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any], count: int, name:
         return NO_FACES
     try:
         flat = polygons.ravel() if isinstance(polygons, np.ndarray) and polygons.ndim == 2 else None
-        corners = (np.concatenate([*polygons]) if flat is None else flat).astype(np.int64)
+        named = np.concatenate([*polygons]) if flat is None else flat
+        if named.dtype.kind == "f" and (np.abs(named) > count).any():  # what int64 does not hold came as float64
+            raise OverflowError
+        corners = named.astype(np.int64)
     except OverflowError:
         raise TiskelError(f"{name}: a face names a vertex beyond all numbers; export it again") from None
     if len(corners) and (corners.min() < 0 or corners.max() >= count):

@@ -86,8 +86,7 @@ def _from_columns(array: npt.NDArray[Any], name: str) -> Points:
         raise TiskelError(f"{name} must hold an array of shape (n, 3), got {array.shape}{hint}")
     if array.shape[1] > 3 and array.shape[0] < array.shape[1]:
         raise TiskelError(f"{name} must hold an array of shape (n, 3), got {array.shape}; transpose it")
-    with np.errstate(all="ignore"):  # what a float64 cannot hold is not finite
-        return np.ascontiguousarray(array[:, :3], dtype=np.float64)
+    return np.ascontiguousarray(array[:, :3], dtype=np.float64)
 
 
 def _from_records(array: npt.NDArray[Any], name: str) -> Parsed:
@@ -99,8 +98,7 @@ def _from_records(array: npt.NDArray[Any], name: str) -> Parsed:
         raise TiskelError(
             f"{name} holds records of {short(', '.join(fields))} and shape {array.shape}; it needs x, y and z"
         )
-    with np.errstate(all="ignore"):
-        points = np.stack([array[names[axis]].astype(np.float64) for axis in "xyz"], axis=1)
+    points = np.stack([array[names[axis]].astype(np.float64) for axis in "xyz"], axis=1)
     others = {key: array[key] for key in numbers if key not in {names[axis] for axis in "xyz"}}
     return Parsed(points, properties=others)
 

@@ -71,8 +71,7 @@ def read(data: bytes, name: str) -> Parsed:
         raise TiskelError(f"{name}: DATA {short(header.layout)!r} is unknown; save it as {', '.join(LAYOUTS)}")
     columns = LAYOUTS[header.layout](data, header, name)
     found = {key: column[:, 0] for (key, _, many), column in zip(header.fields, columns, strict=True) if many == 1}
-    with np.errstate(invalid="ignore"):  # a NaN of another kind is still one
-        points = np.stack([found.pop(axis).astype(np.float64) for axis in "xyz"], axis=1)
+    points = np.stack([found.pop(axis).astype(np.float64) for axis in "xyz"], axis=1)
     return Parsed(points, properties={key: column for key, column in found.items() if key != PADDING})
 
 

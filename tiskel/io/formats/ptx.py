@@ -67,8 +67,7 @@ def _scan(lines: list[str], count: int, at: int, way: Table, name: str) -> Table
     if len(rows) != count or rows.shape[1] not in WIDTHS:
         raise TiskelError(f"{name}: {len(rows)} rows of {rows.shape[1]} numbers after line {at}, {count} are promised")
     missed = (rows[:, :3] == 0).all(axis=1)
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite stays so
-        rows[:, :3] = rows[:, :3] @ way[:3, :3] + way[3, :3]
+    rows[:, :3] = rows[:, :3] @ way[:3, :3] + way[3, :3]
     rows[missed, :3] = np.nan
     return np.asarray(rows)
 

@@ -73,6 +73,7 @@ def finite(values: Points, where: str, name: str) -> Points:
     return values
 
 
+@np.errstate(invalid="ignore")
 def sizes(table: npt.NDArray[Any], where: str, name: str) -> Numbers:
     """Return lengths or areas: 0 or more, or NaN where they are not known."""
     values = np.array(column(table, where, name), np.float64)
