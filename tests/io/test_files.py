@@ -148,7 +148,9 @@ def mesh_of(faces: list[list[int]], order: str) -> bytes:
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
-def test_faces_of_one_length_are_read_at_once_others_one_by_one(order: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_faces_of_one_length_and_of_several_are_read_without_an_object_of_each(
+    order: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     triangles = [[0, 1, 2], [1, 2, 3], [3, 4, 5]]
     mixed = PLY.read(mesh_of([*triangles, [0, 1, 2, 3]], order), "mixed.ply")
     assert mixed.faces.tolist() == [*triangles, [0, 1, 2], [0, 2, 3]]
@@ -161,12 +163,34 @@ def test_faces_of_one_length_are_read_at_once_others_one_by_one(order: str, monk
         PLY.read(data[:-1], "short.ply")
     monkeypatch.setattr(PlyData, "read", None)  # of plyfile, which makes an object of every face
     assert PLY.read(data, "even.ply").faces.tolist() == triangles
-    with pytest.raises(TiskelError, match="not callable"):
-        PLY.read(mesh_of([[0, 1, 2], [0, 1, 2, 3]], order), "mixed.ply")
+    assert PLY.read(mesh_of([*triangles, [0, 1, 2, 3]], order), "mixed.ply").faces.tolist() == mixed.faces.tolist()
+    none = PLY.read(mesh_of([[], [0, 1], [0, 1, 2]], order), "none.ply")
+    assert none.faces.tolist() == [[0, 1, 2]]
+    many = PLY.read(mesh_of([[0, 1, 2]] * 7000 + [[0, 1, 2, 3], [1, 3, 2]], order), "many.ply")
+    assert many.faces[6999:].tolist() == [[0, 1, 2], [0, 1, 2], [0, 2, 3], [1, 3, 2]]
+    short = mesh_of([*triangles, [0, 1, 2, 3]], order)
+    for cut in (1, 4, 16, 17):
+        with pytest.raises(TiskelError, match="early end-of-file"):
+            PLY.read(short[:-cut], "short.ply")
+    with pytest.raises(TiskelError, match="follow the last row"):
+        PLY.read(short + b"more", "long.ply")
 
 
-def test_a_mesh_takes_less_than_ten_times_its_file() -> None:
-    data = mesh_of([[0, 1, 2]] * 30_000, "<")
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_lists_of_faces_beside_other_properties_are_found(order: str) -> None:
+    face = np.empty(3, dtype=[("red", "u1"), ("vertex_indices", object), ("area", "f8"), ("texcoord", object)])
+    for row, corners in enumerate(([0, 1, 2], [0, 1, 2, 3], [3, 2, 1])):
+        face[row] = (row, np.array(corners, np.int32), 0.5, np.arange(2 * len(corners), dtype=np.float32))
+    table = np.zeros(6, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4")])
+    out = io.BytesIO()
+    elements = [PlyElement.describe(face, "face"), PlyElement.describe(table, "vertex")]
+    PlyData(elements, byte_order=order).write(out)
+    assert PLY.read(out.getvalue(), "a.ply").faces.tolist() == [[0, 1, 2], [0, 1, 2], [0, 2, 3], [3, 2, 1]]
+
+
+@pytest.mark.parametrize("last", [[0, 1, 2], [0, 1, 2, 3]])
+def test_a_mesh_takes_less_than_ten_times_its_file(last: list[int]) -> None:
+    data = mesh_of([[0, 1, 2]] * 30_000 + [last], "<")
     tracemalloc.start()
     PLY.read(data, "large.ply")
     peak = tracemalloc.get_traced_memory()[1]

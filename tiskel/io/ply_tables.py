@@ -1,9 +1,12 @@
-"""Tables of PLY files, each element at once where its rows are of one length."""
+"""Tables of PLY files, each element at once, faces whose lists have several lengths by their places."""
 
+import struct
+from array import array
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
 from tiskel.io.streams import Bytes
@@ -11,6 +14,7 @@ from tiskel.io.streams import Bytes
 HEADER_END = b"end_header"  #: the last line of a header
 FACE, LENGTH = "face", " length"  #: an element, and what follows the name of a list in a table; names have no blanks
 CORNERS = 255  #: of a face, at most, to be read at once
+PLACE = np.dtype([("start", np.int64), ("length", np.int64)])  #: of a list: its first byte in the file, and its values
 
 
 def has_lists(elements: Sequence[PlyElement]) -> bool:
@@ -21,23 +25,70 @@ def has_lists(elements: Sequence[PlyElement]) -> bool:
 def read_tables(ply: PlyData, data: Bytes, start: int) -> int:
     """Fill the elements of a binary file, each at once; plyfile reads rows with lists one by one, into many objects.
 
-    The rows begin at start; where they end is returned, -1 where an element has lists of several lengths, or others
-    than faces have. The tables are views of the data, not to be written to.
+    The rows begin at start; where they end is returned, -1 where an element that is no face has lists. The tables are
+    views of the data, not to be written to. Where lists of faces have several lengths, a table holds nothing but where
+    each of them is (PLACE).
     """
     for element in ply.elements:
+        if has_lists([element]) and element.name != FACE:
+            return -1
         kind = _row(element, ply.byte_order, data, start)
-        if kind is None:
-            return -1
-        if start + element.count * kind.itemsize > len(data):
-            if has_lists([element]):  # the first may be the longest
-                return -1
-            raise PlyParseError(f"element {element.name!r}: early end-of-file")
-        table = np.frombuffer(data, kind, element.count, start)
-        if not all((table[name] == table[name][0]).all() for name in kind.names or () if name.endswith(LENGTH)):
-            return -1
-        element.data = table
-        start += element.count * kind.itemsize
+        table = None if kind is None else _even(element, kind, data, start)
+        if table is None:
+            element.data, start = _places(element, ply.byte_order, data, start)
+        else:
+            element.data = table
+            start += table.nbytes
     return start
+
+
+def lists_at(places: npt.NDArray[Any], kind: str, data: Bytes) -> npt.NDArray[Any]:
+    """Return the values of all lists one behind the other, from their places in the file."""
+    size = np.dtype(kind).itemsize
+    values: npt.NDArray[Any] = np.ndarray(max(len(data) - size + 1, 0), kind, data, strides=(1,))  # from every byte on
+    lengths = places["length"]
+    step = np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)
+    return np.asarray(values[np.repeat(places["start"], lengths) + size * step])
+
+
+def _even(element: PlyElement, kind: np.dtype[Any], data: Bytes, start: int) -> npt.NDArray[Any] | None:
+    """Return the table of an element if all its rows are as long as the first; None if not."""
+    if start + element.count * kind.itemsize > len(data):
+        if has_lists([element]):  # the first may be the longest
+            return None
+        raise PlyParseError(f"element {element.name!r}: early end-of-file")
+    table = np.frombuffer(data, kind, element.count, start)
+    even = all((table[name] == table[name][0]).all() for name in kind.names or () if name.endswith(LENGTH))
+    return table if even else None
+
+
+def _places(element: PlyElement, order: str, data: Bytes, start: int) -> tuple[npt.NDArray[Any], int]:
+    """Return where each list of each row is, and where the rows end."""
+    steps: list[tuple[int, struct.Struct | None, int]] = []  # bytes to go, or what says how many values of what size
+    row: list[tuple[Any, ...]] = []
+    for prop in element.properties:
+        if isinstance(prop, PlyListProperty):
+            length, values = (np.dtype(one) for one in prop.list_dtype(order))
+            steps.append((length.itemsize, struct.Struct(f"{'><'[order == '<']}{length.char}"), values.itemsize))
+            row.append((prop.name, PLACE))
+        else:
+            row.append((prop.name, np.uint8, (0,)))  # nothing of it is kept
+            steps.append((np.dtype(prop.dtype(order)).itemsize, None, 0))
+    found = array("q")
+    try:
+        for _ in range(element.count):
+            for size, length_of, each in steps:
+                count = length_of.unpack_from(data, start)[0] if length_of else 0
+                start += size
+                if length_of:
+                    found.extend((start, count))
+                    start += each * count
+                if count < 0 or start > len(data):
+                    raise PlyParseError(f"element {element.name!r}: early end-of-file")
+    except struct.error:
+        raise PlyParseError(f"element {element.name!r}: early end-of-file") from None
+    table = np.frombuffer(found, np.dtype(row), element.count)
+    return table, start
 
 
 def _row(element: PlyElement, order: str, data: Bytes, start: int) -> np.dtype[Any] | None:
@@ -45,7 +96,7 @@ def _row(element: PlyElement, order: str, data: Bytes, start: int) -> np.dtype[A
     if not has_lists([element]):
         whole: np.dtype[Any] = np.dtype(element.dtype(order))
         return whole
-    if element.name != FACE or element.count == 0:
+    if element.count == 0:
         return None
     row: list[tuple[Any, ...]] = []
     for prop in element.properties:

@@ -7,8 +7,8 @@ from tiskel.arrays import Edges, Points
 from tiskel.errors import TiskelError
 from tiskel.io import ply
 from tiskel.io.formats.base import NO_FACES, Format, Parsed, short
-from tiskel.io.formats.faces import fans
-from tiskel.io.ply_tables import HEADER_END
+from tiskel.io.formats.faces import BATCH, Lists, fans, joined
+from tiskel.io.ply_tables import HEADER_END, PLACE, lists_at
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 HOLDERS = ("vertex", "point", "points", "vertices")  #: elements that programs keep points in
@@ -31,7 +31,8 @@ def read(data: bytes, name: str) -> Parsed:
     TiskelError
         Where the file is damaged or has no x, y, z.
     """
-    file = ply.parse(_tidy(data), name)
+    plain = _tidy(data)
+    file = ply.parse(plain, name)
     ours = any(c.startswith("tiskel ") for c in file.comments) and "cloud" in file
     holder = "cloud" if ours else next((one for one in HOLDERS if one in file), "")
     if not holder:
@@ -41,7 +42,9 @@ def read(data: bytes, name: str) -> Parsed:
     table = file[holder].data
     axes = _axes(table, holder, name)
     columns = [key for key in table.dtype.names or () if key not in axes and table.dtype[key].kind != "O"]
-    return Parsed(ply.points_of(table, axes), _triangles(file, name), {key: table[key].copy() for key in columns})
+    return Parsed(
+        ply.points_of(table, axes), _triangles(file, plain, name), {key: table[key].copy() for key in columns}
+    )
 
 
 def write(points: Points) -> bytes:
@@ -70,7 +73,7 @@ def _axes(table: Any, holder: str, name: str) -> list[str]:
     return [names[axis] for axis in "xyz"]
 
 
-def _triangles(file: Any, name: str) -> Edges:
+def _triangles(file: Any, data: bytes, name: str) -> Edges:
     """Return faces as triangles; none where the file has none."""
     if "face" not in file or "vertex" not in file or len(file["face"].data) == 0:
         return NO_FACES
@@ -78,9 +81,16 @@ def _triangles(file: Any, name: str) -> Edges:
     lists = [key for key in table.dtype.names if key in ("vertex_indices", "vertex_index")]
     if not lists:
         return NO_FACES
-    if table.dtype[lists[0]].kind != "O" and not table.dtype[lists[0]].shape:
+    kind = table.dtype[lists[0]]
+    if kind.kind != "O" and kind != PLACE and not kind.shape:
         raise TiskelError(f"{name}: {lists[0]} of 'face' is a single number; it must list the corners of a face")
-    return fans(table[lists[0]], file["vertex"].count, name)
+    corners = table[lists[0]]
+    count = file["vertex"].count
+    if corners.dtype != PLACE:
+        return fans(corners, count, name)
+    values = file["face"].ply_property(lists[0]).list_dtype(file.byte_order)[1]
+    parts = (corners[at : at + BATCH] for at in range(0, len(corners), BATCH))
+    return joined(fans(Lists(lists_at(part, values, data), part["length"]), count, name) for part in parts)
 
 
 PLY = Format("PLY", (".ply",), read, write, lambda data: data.removeprefix(BYTE_ORDER_MARK).startswith(ply.MAGIC))
