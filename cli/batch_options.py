@@ -5,8 +5,7 @@ from typing import Annotated, get_args
 
 import typer
 
-from tiskel.cli.words import chosen, completes_list
-from tiskel.errors import TiskelError
+from tiskel.cli.words import chosen, completes_list, misput
 from tiskel.params import STAGES, BatchParams, Stage
 
 BATCH = BatchParams()
@@ -87,5 +86,5 @@ def shard_of(words: str) -> tuple[int, int]:
     """Return I and N of I/N."""
     part, slash, parts = words.partition("/")
     if not (slash and part.isdigit() and parts.isdigit()):
-        raise TiskelError(f"--shard needs I/N, such as 1/4, got {words!r}")
+        raise misput("--shard", "I/N, such as 1/4", words)
     return int(part), int(parts)

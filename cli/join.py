@@ -12,6 +12,7 @@ from tiskel.cli import options as o
 from tiskel.cli.common import common
 from tiskel.cli.progress import shown
 from tiskel.cli.skeleton import FormatName, format_of
+from tiskel.cli.words import misput
 from tiskel.errors import TiskelError
 from tiskel.params import JoinParams
 
@@ -72,4 +73,4 @@ def _number(words: str) -> int:
     try:
         return int(words)
     except ValueError:
-        raise TiskelError(f"--keep needs all or a number of points, got {words!r}") from None
+        raise misput("--keep", "all or a number of points", words) from None

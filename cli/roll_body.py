@@ -10,6 +10,7 @@ import typer
 from tiskel.cli import console, stages
 from tiskel.cli.progress import reading, shown
 from tiskel.cli.stages import numbers_of
+from tiskel.cli.words import misput
 from tiskel.errors import TiskelError
 from tiskel.params import RollParams
 
@@ -59,8 +60,8 @@ def body_named(word: str) -> "ParametricSurface":
 
     kind, _, sizes = word.partition(":")
     if kind in {"ellipsoid", "cylinder"}:
-        a, b, *c = numbers_of(f"--body {kind}", sizes, 3 if kind == "ellipsoid" else 2)
+        a, b, *c = numbers_of("--body", sizes, 3 if kind == "ellipsoid" else 2)
         if not min(a, b, *c) > 0:
-            raise TiskelError(f"--body {kind} needs positive sizes, got {sizes!r}")
+            raise misput("--body", f"positive sizes of a {kind}", sizes)
         return Ellipsoid(a, b, c[0]) if c else Rod(a, b)
     return read_surfaces(Path(word)).named(None)

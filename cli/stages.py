@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tiskel import messages
 from tiskel.cli import console
+from tiskel.cli.words import misput
 from tiskel.errors import TiskelError
 from tiskel.extras import ADVICE, there
 from tiskel.params import ConditioningParams, ContractionParams, PipelineParams, params_class, settings_of
@@ -44,7 +45,7 @@ def classes_of(value: str | None) -> tuple[int, ...] | None:
         return None
     words = [word.strip() for word in value.split(",")]
     if not all(word.isascii() and word.isdigit() and len(word) <= 3 for word in words):
-        raise TiskelError(f"--classification needs numbers of classes such as 4,5, got {value!r}")
+        raise misput("--classification", "numbers of classes such as 4,5", value)
     return tuple(map(int, words))
 
 
@@ -55,7 +56,7 @@ def sample_of(value: str | int | None) -> int | None:
     try:
         return int(str(value))
     except ValueError:
-        raise TiskelError(f"--sample needs auto or a number of points, got {value!r}") from None
+        raise misput("--sample", "auto or a number of points", value) from None
 
 
 def read_cloud(source: Path, params: ConditioningParams) -> "Cloud":
@@ -194,7 +195,7 @@ def numbers_of(option: str, value: str, count: int) -> tuple[float, ...]:
     except ValueError:
         numbers = ()
     if len(numbers) != count:
-        raise TiskelError(f"{option} needs {count} numbers separated by commas, got {value!r}")
+        raise misput(option, f"{count} numbers separated by commas", value)
     return numbers
 
 

@@ -41,6 +41,11 @@ def all_shapes() -> list[str]:
     return [name for group in GROUPS.values() for name in group]
 
 
+def misput(option: str, needed: str, value: object) -> typer.BadParameter:
+    """Return the error, exit code 2, for a value that an option cannot take."""
+    return typer.BadParameter(f"it needs {needed}, got {value!r}.", param_hint=option)
+
+
 def chosen(option: str, word: str, known: Iterable[str]) -> str:
     """Return a word that is one of those known; raise typer.BadParameter, exit code 2, where it is not."""
     words = list(known)

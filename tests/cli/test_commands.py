@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from plyfile import PlyData, PlyElement
 
-from reference.fixtures import Runner, one_error_line
+from reference.fixtures import Runner, one_error_line, wrong_usage
 from tiskel import (
     LbcParams,
     ShapeParams,
@@ -158,7 +158,6 @@ def test_shape_is_scanned_from_sides_on_a_table(tiskel: Runner, tmp_path: Path) 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--view", "1,2"), "--view needs 3 numbers"),
         (("--view", "0,0,0"), "not all zero"),
         (("--sensor-noise", "0.1"), "give a view"),
         (("--view", "0,0,1", "--sensor-distance", "0.2"), "1 diagonal"),
@@ -244,7 +243,13 @@ def test_missing_files_folders_and_wrong_stages(tiskel: Runner, cloud: Path, tmp
 
 
 def test_wrong_values_and_wrong_usage(tiskel: Runner, cloud: Path) -> None:
-    assert "--crop needs 6 numbers" in one_error_line(tiskel("contract", cloud.name, "--crop", "1,2"))
+    for option, value, needed in (
+        ("--crop", "1,2", "6 numbers separated by commas"),
+        ("--classification", "ground", "numbers of classes such as 4,5"),
+    ):
+        said = wrong_usage(tiskel("contract", cloud.name, option, value))
+        assert f"Invalid value for {option}: it needs {needed}, got '{value}'." in said
+    assert "--view: it needs 3 numbers" in wrong_usage(tiskel("shape", "y", "--view", "1,2"))
     assert "TISKEL_NUM_THREADS must be" in tiskel("contract", cloud.name, TISKEL_NUM_THREADS="many").stderr.decode()
     for words in (
         ("contract",),

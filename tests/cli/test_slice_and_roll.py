@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from reference.fixtures import Runner, one_error_line
+from reference.fixtures import Runner, one_error_line, wrong_usage
 from tiskel import contract, extract_skeleton, make_shape, read_surfaces, shape_graph, write_skeleton
 from tiskel.io.stages.roll import COLUMNS
 from tiskel.io.stages.trajectories import read_poses
@@ -201,15 +201,16 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
         (("s.ply",), "is not a surface file"),
         (("f.json", "--side", "inside", "--radius", 0.5), "it fits nowhere, a sphere of less than"),
         (("f.json", "--start", "0,4,0,0,0"), "v = 4 lies outside the branch"),
-        (("f.json", "--start", "0,4"), "--start needs 5 numbers"),
         (("f.json", "--branch", "thumb"), "no surface of branch thumb; there are 0"),
-        (("f.json", "--omega", "a,b,c"), "--omega needs 3 numbers"),
         (("f.json", "--rtol", 0), "rtol must be a positive number, got 0"),
         (("f.json", "--velocity", "0,0,1"), "velocity along the normal must be 0"),
         (("f.json", "--model", "local", "--normals", "pca"), "the local model has its curvature from the Fourier"),
         (("f.json", "--inputs", "w.csv", "--omega", "1,0,0"), "--omega would not count; drop one"),
     ):
         assert said in one_error_line(tiskel("roll", *words))
+    for option, value, count in (("--start", "0,4", 5), ("--omega", "a,b,c", 3)):
+        said = wrong_usage(tiskel("roll", "f.json", option, value))
+        assert f"{option}: it needs {count} numbers separated by commas, got '{value}'" in said
     still = tiskel("roll", "f.json", "--omega", "0,0,0", "--json", "--duration", 1)
     assert still.returncode == 0
     assert "stays where it is" in json.loads(still.stdout)["runs"][0]["warnings"][0]
@@ -320,10 +321,13 @@ def test_other_bodies_than_a_sphere(tiskel: Runner, surface: Path, tmp_path: Pat
     said = json.loads(tiskel(*words, "--body", "ellipsoid:0.05,0.06,0.04", "--json").stdout)
     assert said["body"] == "ellipsoid:0.05,0.06,0.04"
     for more, wrong in (
-        (("--body", "ellipsoid:1,2"), "needs 3 numbers"),
-        (("--body", "cylinder:1,0"), "needs positive sizes"),
         (("--body", "cylinder:1,1", "--model", "body"), "leave out --model body"),
         (("--model", "body", "--branch", "0"), "knows no branches"),
-        (("--model", "body", "--heading", "1,2"), "--heading needs 3 numbers"),
     ):
         assert wrong in one_error_line(tiskel(*words, *more))
+    for option, value, wrong in (
+        ("--body", "ellipsoid:1,2", "--body: it needs 3 numbers"),
+        ("--body", "cylinder:1,0", "--body: it needs positive sizes of a cylinder, got '1,0'"),
+        ("--heading", "1,2", "--heading: it needs 3 numbers"),
+    ):
+        assert wrong in wrong_usage(tiskel(*words, option, value))

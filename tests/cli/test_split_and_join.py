@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from reference.fixtures import Runner, one_error_line
+from reference.fixtures import Runner, one_error_line, wrong_usage
 from tiskel import read_skeleton
 
 
@@ -41,6 +41,6 @@ def test_wrong_usage_is_one_line(tiskel: Runner, tmp_path: Path) -> None:
     assert "at least 10" in one_error_line(tiskel("split", "c.xyz", "-o", "d", "--points", 3))
     assert "positive length" in one_error_line(tiskel("split", "c.xyz", "-o", "d", "--overlap", "-1"))
     assert "index.json" in one_error_line(tiskel("join", ".", "-o", "out.ply"))
-    assert "--keep" in one_error_line(tiskel("join", ".", "--keep", "some"))
+    assert "--keep: it needs all or a number of points" in wrong_usage(tiskel("join", ".", "--keep", "some"))
     assert tiskel("split", "c.xyz", "--objects", "-o", "d").returncode == 0
     assert sorted(path.name for path in (tmp_path / "d").iterdir()) == ["clouds", "index.json", "rest.ply"]

@@ -52,6 +52,12 @@ def test_las_that_promises_more_than_it_holds_is_refused_before_any_library_sees
     packed[247:255] = (10**15).to_bytes(8, "little")
     with pytest.raises(TiskelError, match="more than 50 times as much"):
         las.read(bytes(packed), "a.laz")
+    packed = bytearray(las_bytes(packed=True))
+    at = packed.find(b"laszip encoded") - 2 + 54 + 12
+    assert int.from_bytes(packed[at : at + 4], "little") in (50_000, 0xFFFFFFFF)
+    packed[at : at + 4] = (8_000_000).to_bytes(4, "little")  # the library makes room for a chunk of so many points
+    with pytest.raises(TiskelError, match="has chunks of 259 MB from 1 kB"):
+        las.read(bytes(packed), "a.laz")
     with pytest.raises(TiskelError, match="does not begin with a whole header"):
         las.read(bytes(data[:100]), "a.las")
 

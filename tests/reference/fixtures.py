@@ -20,3 +20,10 @@ def one_error_line(done: subprocess.CompletedProcess[bytes], code: int = 1) -> s
     assert len(lines) == 1
     assert lines[0].startswith("error: ")
     return lines[0]
+
+
+def wrong_usage(done: subprocess.CompletedProcess[bytes]) -> str:
+    """Return what a run says that was called wrongly, without the frame around it, having checked its exit code."""
+    assert done.returncode == 2, done.stderr.decode()
+    assert done.stdout == b""
+    return " ".join(done.stderr.decode().translate(dict.fromkeys(map(ord, "│╭╮╰╯─"), " ")).split())

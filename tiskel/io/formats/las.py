@@ -15,6 +15,8 @@ from tiskel.io.limits import check_unpacked
 MARK = b"LASF"
 SHORTEST, LONG = 227, 375  #: bytes of a header up to version 1.3, and of one of version 1.4
 VLR, EVLR = 54, 60  #: least bytes of a record of variable length in front of the points, and behind them
+LASZIP = b"laszip encoded"  #: user of the record that says how LAZ is packed
+CHUNK, ANY_CHUNK = 12, 0xFFFFFFFF  #: where it says how many points a chunk holds, and that each chunk says it itself
 PACKED = 0x80  #: bit of the point format that says LAZ
 KEPT = ("intensity", "classification", "return_number", "number_of_returns", "red", "green", "blue")
 
@@ -75,10 +77,18 @@ def _check(data: bytes, name: str) -> None:
         raise TiskelError(f"{name} holds no points; check how it was made")
     if data[104] & PACKED:
         check_unpacked(count * size, len(data), name)
+        check_unpacked(_chunk(data, start) * size, len(data), name, "has chunks of")
     elif start + count * size > len(data):
         raise TiskelError(
             f"{name}: the header promises {count} points of {size} bytes, {len(data) - start} follow; copy it again"
         )
+
+
+def _chunk(data: bytes, start: int) -> int:
+    """Return how many points the chunks of LAZ hold, for each of which its reader makes room; 0 where that varies."""
+    found = data.find(LASZIP, 0, start)
+    points = _number(data, found - 2 + VLR + CHUNK, 4) if found >= 0 else 0
+    return 0 if points == ANY_CHUNK else points
 
 
 def _number(data: bytes, at: int, size: int) -> int:
