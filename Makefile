@@ -7,12 +7,13 @@ RUNS := $(VENV)/.runs
 INSTALLED := $(VENV)/.installed
 TOOLS := $(VENV)-tools
 
-.PHONY: help demo test debug check format data docs dissertation dist audit sbom clean
+.PHONY: help demo test debug coverage check format data docs dissertation dist audit sbom clean
 
 help:
 	@echo "make demo    skeleton of a sample cloud: files and a picture in out/demo"
 	@echo "make test    the test suite"
 	@echo "make debug   the tests of kernels and library with every array index checked"
+	@echo "make coverage   which branches of the code the tests run, those in processes of their own included"
 	@echo "make check   lint, format and types"
 	@echo "make format  format the code"
 	@echo "make data    make the sample clouds in data/ anew"
@@ -33,6 +34,14 @@ test: $(INSTALLED)
 
 debug: $(INSTALLED)
 	TI_DEBUG=1 TI_OFFLINE_CACHE=0 $(BIN)/pytest -q tests/kernels tests/geometry tests/preprocess tests/methods tests/metrics tests/slicing tests/pipeline/test_stages.py
+
+# Forks of a pool of processes wait for ever for a lock of coverage's: those tests are left out.
+coverage: $(INSTALLED)
+	rm -rf out/coverage && mkdir -p out/coverage
+	$(BIN)/coverage run -m pytest -q --ignore tests/kernels/test_concurrency.py
+	$(BIN)/coverage combine -q
+	$(BIN)/coverage json -q -o out/coverage.json
+	$(BIN)/coverage report --skip-covered
 
 check: $(INSTALLED)
 	$(BIN)/ruff check .

@@ -1,10 +1,11 @@
 """How reliable reading is, counted anew: damaged files and files of reported trouble; writes docs/reliability.md.
 
-    python benchmarks/reliability.py --cases 10000 --state out/fuzz --write
+    python benchmarks/reliability.py --cases 100000 --state out/fuzz --write
 
 Runs the fuzzer (tests/fuzz) until every reader has had so many cases, those of
 earlier calls with the same --state included, and reads the files of TISKEL_CASES,
-each in a process of its own.
+each in a process of its own. What benchmarks/kills.py, benchmarks/mutation.py and
+`make coverage` left is told as it is.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections import Counter, defaultdict
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -85,6 +87,34 @@ def killed(state: Path) -> str:
     return "\n".join([KILLED, *rows])
 
 
+def covered(report: Path) -> str:
+    """Return the table of rooms, of how many statements and branches the tests run, as `make coverage` left it."""
+    files = json.loads(report.read_text())["files"] if report.exists() else {}
+    rooms: dict[str, Counter[str]] = defaultdict(Counter)
+    for path, one in files.items():
+        words = Path(path).parts
+        room = words[1] if words[0] == "tiskel" and len(words) > 2 else words[0]
+        rooms[room].update({key: one["summary"][key] for key in (*STATEMENTS, *BRANCHES)})
+    rooms["all"] = sum(rooms.values(), Counter())
+    rows = [
+        f"| {room} | {c[STATEMENTS[0]]} | {_share(c, *STATEMENTS)} | {c[BRANCHES[0]]} | {_share(c, *BRANCHES)} |"
+        for room, c in rooms.items()
+    ]
+    return "\n".join([COVERED, *rows])
+
+
+def _share(counts: "Counter[str]", whole: str, part: str) -> str:
+    return f"{100 * counts[part] / counts[whole]:.1f}" if counts[whole] else "-"
+
+
+STATEMENTS, BRANCHES = ("num_statements", "covered_lines"), ("num_branches", "covered_branches")
+COVERED = """## Run by the tests
+
+Statements, and ways out of those that have several, in percent of each room (`make coverage`); commands run in
+processes of their own and count. Kernels are compiled and not counted: tests compare each with a plain reference.
+
+| room | statements | run | branches | run |
+|---|---|---|---|---|"""
 KILLED = """## Killed at random moments
 
 SIGKILL, SIGTERM and SIGINT at moments that are uniform over the time of an undisturbed run of small clouds
@@ -102,6 +132,7 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--state", type=Path, default=Path("out/fuzz"))
     parser.add_argument("--kills", type=Path, default=Path("out/kills.json"), help="what benchmarks/kills.py counted")
+    parser.add_argument("--coverage", type=Path, default=Path("out/coverage.json"), help="what `make coverage` wrote")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     rows = fuzzed(given.state, given.cases)
@@ -111,7 +142,7 @@ def main() -> None:
         "\n\n## Files of reported trouble\n\nEach in a process of its own: a value (exit code 0) or one line (1).\n\n"
     )
     page += "| folder | files | read | refused | faults | MB at most | s at most |\n|---|---|---|---|---|---|---|\n"
-    page += "\n".join(reported()) + f"\n\n{killed(given.kills)}\n\n## The environment\n\n"
+    page += "\n".join(reported()) + f"\n\n{killed(given.kills)}\n\n{covered(given.coverage)}\n\n## The environment\n\n"
     page += (
         "Closed streams, full disks, folders that are gone, limits of memory, odd names, links, endless input, killed\n"
     )
