@@ -68,6 +68,7 @@ def _never_ends(data: bytes) -> Arrays:
 
 def test_forks_read_as_processes_do_and_tell_what_takes_too_much() -> None:
     data = np.arange(3.0).tobytes()
+    held = np.empty(1 << 29)  # 4 GB of addresses: as many as a suite has that has gone on for long
     with forks(1, 20 << 20, PER_BYTE):
         np.testing.assert_array_equal(read_apart(_doubles, data, "a.e57", "E57")["points"], [0, 1, 2])
         with pytest.raises(TiskelError, match=r"a.e57 is not a valid E57 file: buffer size must be a multiple"):
@@ -78,3 +79,4 @@ def test_forks_read_as_processes_do_and_tell_what_takes_too_much() -> None:
             read_apart(_fills, data, "a.e57", "E57")
         with pytest.raises(TooMuch, match="more than 1 s"):
             read_apart(_never_ends, data, "a.e57", "E57")
+    assert held.nbytes == 4 << 30
