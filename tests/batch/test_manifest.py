@@ -1,16 +1,18 @@
 """Manifest and leases: lines that cannot be torn apart, one owner at a time, and heirs of the dead."""
 
+import contextlib
 import json
 import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tiskel.batch.leases import Leases
-from tiskel.batch.manifest import Manifest
+from tiskel.batch.manifest import Manifest, locked
 from tiskel.batch.owner import Owner, machine, myself, started
 
 
@@ -136,3 +138,75 @@ def test_the_dead_are_swept_up_and_the_living_left_alone(tmp_path: Path) -> None
 @pytest.mark.skipif(not machine(), reason="the system does not say which processes live")
 def test_a_process_knows_itself() -> None:
     assert not myself().gone()
+
+
+def test_the_folder_stays_while_another_is_at_a_cloud_and_goes_with_what_the_killed_left(tmp_path: Path) -> None:
+    mine, theirs = leases(tmp_path), other(tmp_path)
+    assert theirs.take("a")
+    left = tmp_path / "leases" / "b.token.1"  # of who was killed while writing a lease
+    left.touch()
+    mine.close()
+    assert theirs.mine("a")
+    assert left.exists()
+    theirs.release("a")
+    theirs.close()
+    assert not (tmp_path / "leases").exists()
+
+
+def test_a_lease_that_comes_while_the_folder_is_being_cleared_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mine, theirs = leases(tmp_path), other(tmp_path)
+    monkeypatch.setattr(
+        "tiskel.batch.leases.any", lambda leases: bool(list(leases)) or not theirs.take("a"), raising=False
+    )
+    mine.close()
+    assert theirs.mine("a")
+    theirs._over.set()
+
+
+def test_a_file_system_without_links_has_leases_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*paths: object) -> None:
+        raise PermissionError("links are not supported")
+
+    monkeypatch.setattr("tiskel.batch.leases.os.link", refuse)
+    mine, theirs = leases(tmp_path), other(tmp_path)
+    assert mine.take("a")
+    assert not theirs.take("a")
+    assert mine.mine("a")
+    mine.release("a")
+    assert theirs.take("a")
+
+
+def test_a_lease_that_was_never_written_to_its_end_is_respected_while_it_is_young(tmp_path: Path) -> None:
+    mine = leases(tmp_path)
+    half = tmp_path / "leases" / "a.lease"
+    half.write_text('{"token": ')
+    assert not mine.take("a")
+    old = time.time() - 120
+    os.utime(half, (old, old))
+    assert mine.take("a")
+    assert mine.mine("a")
+
+
+def test_who_waited_for_the_lock_looks_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another heir had it, and inherited."""
+    assert other(tmp_path, pid=os.getpid(), start=1).take("a")
+    mine, heir = leases(tmp_path), other(tmp_path, token="heir")
+
+    @contextlib.contextmanager
+    def late(path: Path) -> Iterator[int]:
+        with monkeypatch.context() as plain:
+            plain.setattr("tiskel.batch.leases.locked", locked)
+            assert heir.take("a")
+        with locked(path) as handle:
+            yield handle
+
+    monkeypatch.setattr("tiskel.batch.leases.locked", late)
+    assert not mine.take("a")
+    assert heir.mine("a")
+
+
+def test_a_lease_that_is_given_back_while_we_look_is_not_of_the_dead(tmp_path: Path) -> None:
+    elsewhere = Owner("x", "elsewhere", "there", 1, 1)
+    assert not leases(tmp_path)._stale("gone", elsewhere)

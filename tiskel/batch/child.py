@@ -10,7 +10,6 @@ import hashlib
 import importlib
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -156,7 +155,3 @@ def _watch(parent: int) -> None:
     while os.getppid() == parent:
         time.sleep(1.0)
     os._exit(1)
-
-
-if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]))
