@@ -81,6 +81,6 @@ class Board:
         minutes = (time.monotonic() - self.began) / 60
         rate = self.here / minutes if minutes > 0 else 0.0
         kept = f", {self.counts['kept']} done before" if self.counts["kept"] else ""
-        pace = f", {rate:.1f} clouds per minute" if self.here else ""
-        time_left = f", {clock(left / rate * 60)} left" if self.here and left else ""
+        pace = f", {rate:.1f} clouds per minute" if rate else ""
+        time_left = f", {clock(left / rate * 60)} left" if rate and left else ""
         return f"{self.counts['done']} done{kept}, {self.counts['failed']} failed, {left} left{pace}{time_left}"

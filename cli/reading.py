@@ -24,15 +24,13 @@ class Reading(TyperCommand):
             param: Any = error.param
             if found := NO_CHOICE.fullmatch(error.message):
                 error.message = f"{found[1].rstrip('.')}.{meant(found[2], QUOTED.findall(found[3]))}"
-            if param is not None:
-                error.message += remark(ctx, param.name)
+            error.message += remark(ctx, param.name)
             raise
 
     def get_help_option(self, ctx: Any) -> Any:
         """Return the option --help, as bare as other flags."""
-        option = super().get_help_option(ctx)
-        if option is not None:
-            option.metavar = ""
+        option: Any = super().get_help_option(ctx)
+        option.metavar = ""
         return option
 
 

@@ -62,6 +62,6 @@ def body_named(word: str) -> "ParametricSurface":
     if kind in {"ellipsoid", "cylinder"}:
         a, b, *c = numbers_of("--body", sizes, 3 if kind == "ellipsoid" else 2)
         if not min(a, b, *c) > 0:
-            raise misput("--body", f"positive sizes of a {kind}", sizes)
+            raise misput("--body", f"positive sizes of {'an' if c else 'a'} {kind}", sizes)
         return Ellipsoid(a, b, c[0]) if c else Rod(a, b)
     return read_surfaces(Path(word)).named(None)
