@@ -41,7 +41,7 @@ def test_a_child_that_waited_for_too_long_ends_and_the_next_one_does_the_cloud(
     then: str, made: Worker, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its pipe is closed before the process is gone; one that stays is killed."""
-    idle = f"import time; import tiskel.batch.child as c; c.IDLE = 0.2; {LAST}{then}"
+    idle = f"import time; import tiskel.batch.child as c; c.IDLE = 0.5; {LAST}{then}"
     monkeypatch.setattr(worker, "BOOT", worker.BOOT.replace(LAST, idle))
     made.kill()  # of none: nothing
     assert done(made, tmp_path, "a")["status"] == "done"
