@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from reference.tubes import bent_tube
+from tiskel import TiskelError
 from tiskel.arrays import Numbers, Points
 from tiskel.geometry.bspline import fit_bspline
 from tiskel.slicing.axis import fit_axis, sharpest
 from tiskel.slicing.field import fit_field
-from tiskel.surfaces.analytic import Cone, Ellipsoid, EllipticCylinder, Plane, Torus
+from tiskel.surfaces.analytic import Cone, Ellipsoid, EllipticCylinder, Plane, Torus, cylinder
 from tiskel.surfaces.forms import forms_of
 from tiskel.surfaces.nearest import nearest_place
 from tiskel.surfaces.tube import V_STOP, Tube
@@ -166,3 +167,16 @@ def test_the_nearest_place_looks_along_the_normal(name: str) -> None:
     point = np.array(EVERY[name].jet(0.9, 1.4).f, float) + 0.1 * np.array(forms_of(EVERY[name].jet(0.9, 1.4)).z, float)
     jet = EVERY[name].jet(*nearest_place(EVERY[name], point))
     np.testing.assert_allclose(np.array(jet.f, float), np.array(EVERY[name].jet(0.9, 1.4).f, float), atol=1e-9)
+
+
+@pytest.mark.parametrize("x", [1.5, 80.0, -5000.0])
+def test_the_nearest_place_of_a_surface_without_end_is_as_far_as_the_point(x: float) -> None:
+    """First guesses go to v = 10, steps of 0.3 only came to 25: a place on the surface was told to be far from it."""
+    u, v = nearest_place(cylinder(2.0), np.array([x, 0.0, 3.0]))
+    assert (np.sin(u), v) == pytest.approx((1.0, x), rel=1e-9)
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf])
+def test_the_nearest_place_to_nothing_is_refused(wrong: float) -> None:
+    with pytest.raises(TiskelError, match=rf"three finite coordinates, got \[0\.0, {wrong}, 1\.0\]"):
+        nearest_place(cylinder(2.0), np.array([0, wrong, 1.0]))

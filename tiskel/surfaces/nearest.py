@@ -9,14 +9,16 @@ from tiskel.errors import TiskelError
 from tiskel.surfaces.jets import ParametricSurface
 
 GRID = 96, 400  # first guesses around and along
+EDGE = 10.0  # of v, that the first guesses go to where a surface has no end
 ROUNDS, ENOUGH = 50, 1e-14  # Newton steps; the last one, in radians
+LONGEST = 0.3  # of a step; beyond the first guesses it grows with the way: by 0.3 a round, to a million in all
 
 
 def even_places(surface: ParametricSurface, around: int, along: int) -> tuple[Table, Table]:
     """Return u and v (along, around) of an even grid; a surface without end in v is taken from -10 to 10."""
     low, high = surface.v_range
     period = surface.periods[1]
-    span = (0.0, period) if period else (max(low, -10.0), min(high, 10.0))
+    span = (0.0, period) if period else (max(low, -EDGE), min(high, EDGE))
     u, v = np.meshgrid(np.linspace(0, 2 * pi, around, endpoint=False), np.linspace(*span, along))
     return u, v
 
@@ -58,7 +60,8 @@ def refined_place(surface: ParametricSurface, point: Numbers, u: float, v: float
         hessian = metric + np.array([[off @ f_uu, off @ f_uv], [off @ f_uv, off @ f_vv]])
         convex = hessian[0, 0] > 0 and np.linalg.det(hessian) > 0
         step = np.linalg.solve(hessian if convex else metric, -slope)
-        step *= min(1.0, 0.3 / max(float(np.abs(step).max()), 1e-300))
+        longest = LONGEST * max(1.0, abs(v) - EDGE + 1)
+        step *= min(1.0, longest / max(float(np.abs(step).max()), 1e-300))
         after = min(max(v + float(step[1]), low), high)
         moved = max(abs(float(step[0])), abs(after - v))
         u, v = u + float(step[0]), after
