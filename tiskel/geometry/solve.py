@@ -48,7 +48,11 @@ def contracted(
         Where the solver is not installed.
     """
     squares = attraction**2
-    normal = sparse.csc_array(contraction**2 * (laplacian.T @ laplacian) + sparse.diags_array(squares))
+    try:
+        square = contraction**2
+    except OverflowError:  # of a weight above 1e154
+        raise SingularStep from None
+    normal = sparse.csc_array(square * (laplacian.T @ laplacian) + sparse.diags_array(squares))
     solution = BACKENDS[solver](normal)(squares[:, None] * points)
     if not np.isfinite(solution).all():
         raise SingularStep
