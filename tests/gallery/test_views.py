@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tiskel import ShapeParams, TiskelError, make_shape, named_shape, shape_graph
+from tiskel.gallery import views
 from tiskel.gallery.body import surface_distance
 from tiskel.gallery.views import TABLE_SHARE, seen_from
 
@@ -120,3 +121,26 @@ def test_the_same_seed_gives_the_same_bytes() -> None:
 def test_wrong_settings_are_refused(settings: dict[str, Any]) -> None:
     with pytest.raises(TiskelError):
         ShapeParams(**settings)
+
+
+def test_more_points_are_sampled_until_a_sensor_sees_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of as many points as are wanted it sees less than half; a limit ends the search."""
+    sampled: list[int] = []
+    points = make_shape(CAPSULE, ShapeParams(count=8000))[0]
+
+    def sample(count: int) -> Any:
+        sampled.append(count)
+        return points[:count]
+
+    scene = views.Scene(sample=sample, inside=lambda places: np.zeros(len(places), bool), distance=10.0, noise=0.0,
+                        table=False)  # fmt: skip
+    monkeypatch.setattr(views, "LEAST", 1000)
+    monkeypatch.setattr(views, "DENSE", 1)
+    seen = views.scan(scene, 1500, ((1.0, 0, 0),), np.random.default_rng(0))
+    assert sampled == [1500, 3000, 6000][: len(sampled)]
+    assert len(sampled) > 1
+    assert seen.shape == (1500, 3)
+    assert seen[:, 0].mean() > 0.05  # the side that faces it
+    monkeypatch.setattr(views, "MOST", 2000)
+    with pytest.raises(TiskelError, match=r"a sensor towards \(1\.0, 0, 0\), 10\.0 diagonals away, sees too little; m"):
+        views.scan(scene, 1500, ((1.0, 0, 0),), np.random.default_rng(0))

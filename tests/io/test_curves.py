@@ -244,3 +244,14 @@ def test_skeleton_writes_the_table_of_branches(tiskel: Runner, cloud: Path, tmp_
     assert tiskel("contract", cloud, "-o", "c.ply").returncode == 0
     assert tiskel("skeleton", "c.ply", "-o", "s.vtp", "--branches", "b.csv").returncode == 0
     assert len((tmp_path / "b.csv").read_text().splitlines()) == 4
+
+
+def test_the_table_of_branches_of_a_loop_and_of_a_bridge() -> None:
+    """A triangle of sides 3, 4 and 5; then a way of 1 and 3 whose second half was laid over a gap."""
+    triangle = Curve(np.array([[0.0, 0, 0], [3, 0, 0], [0, 4, 0]]), np.array([[0, 1], [1, 2], [0, 2]], np.int32))
+    (loop,) = branch_table(triangle)
+    assert (loop.kind, loop.start, loop.length, loop.chord, loop.tortuosity) == ("loop", loop.end, 12, 0, None)
+    path = Curve(np.array([[0.0, 0, 0], [1, 0, 0], [4, 0, 0]]), np.array([[0, 1], [1, 2]], np.int32),
+                 bridged=np.array([False, True]))  # fmt: skip
+    (way,) = branch_table(path)
+    assert (way.kind, way.bridged, loop.bridged) == ("end-end", 0.75, 0.0)

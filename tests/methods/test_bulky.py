@@ -4,14 +4,18 @@ import numpy as np
 import pytest
 
 from tiskel import ContractionParams, CurveGraph, Skeleton, contract, extract_skeleton
-from tiskel.arrays import Points
-from tiskel.geometry.body import shares_of_depth
+from tiskel.arrays import Indices, Points
+from tiskel.geometry.body import Body, shares_of_depth
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.round_cones import ConeGraph, sample_union, union_distance
 from tiskel.geometry.solid import Solid, solid_of
+from tiskel.methods.robust.body import body_curve
 from tiskel.methods.robust.body.limbs import without_corners, zipped
 from tiskel.methods.robust.body.strands import plain_curve, strands_of
+from tiskel.methods.robust.curve import ConeCurve, with_nodes
+from tiskel.methods.robust.fit import ConeFit
 from tiskel.methods.robust.network import prepared
+from tiskel.params import RobustParams
 
 HALF = np.array([1.0, 0.6, 0.4])  # half sides of the blocks
 RADIUS = 0.25  # of their holes
@@ -172,3 +176,69 @@ def test_branches_side_by_side_become_one_until_they_part() -> None:
     assert len(joined.nodes) < len(curve.nodes)
     assert joined.components == 1
     assert joined.length < 0.8 * curve.length
+
+
+def forked(body: Body, counts: tuple[int, int]) -> ConeCurve:
+    """Two ways of so many nodes each, of the same length and at a narrow angle, and one back from their joint."""
+    middle = body.places[body.clearance.argmax()]
+    long, flat = (np.eye(3)[by(np.ptp(body.places, axis=0))] for by in (np.argmax, np.argmin))
+    nodes, edges = [middle[None]], []
+    at = 1
+    for way, count in ((-long, 10), (long + 0.1 * flat, counts[0]), (long - 0.1 * flat, counts[1])):
+        nodes.append(middle + np.linspace(0, 0.5, count + 1)[1:, None] * way)
+        edges.append(np.stack([np.r_[0, at + np.arange(count - 1)], at + np.arange(count)], axis=1))
+        at += count
+    places = np.concatenate(nodes)
+    return plain_curve(places, np.concatenate(edges).astype(np.int32), body.clearance_at(places))
+
+
+def test_branches_are_not_joined_where_that_would_make_a_loop() -> None:
+    """Of nodes unevenly apart one takes the place of two of the other branch, and the way past the first stays."""
+    body = solid_from(block(0)).body
+    assert body is not None
+    assert zipped(forked(body, (10, 10)), body).length < 0.8 * forked(body, (10, 10)).length
+    uneven = forked(body, (5, 10)), forked(body, (10, 5))
+    joined = [zipped(curve, body) for curve in uneven]
+    assert [curve.loops for curve in joined] == [0, 0]
+    assert all(one is other for one, other in zip(uneven, joined, strict=True))
+
+
+def test_branches_are_joined_no_more_often_than_there_are_branches(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = plain_curve(np.eye(4, 3), np.array([[0, 1], [0, 2], [0, 3]], np.int32), np.ones(4))
+    asked = []
+
+    def again(found: ConeCurve, _: Body) -> tuple[Indices, Indices, Points]:
+        asked.append(len(found.nodes))
+        return np.arange(4, dtype=np.int32), np.array([1], np.int32), found.nodes[[1]] / 2
+
+    monkeypatch.setattr("tiskel.methods.robust.body.limbs._longest_zip", again)
+    body = solid_from(block(0)).body
+    assert body is not None
+    assert zipped(curve, body).nodes[1] == pytest.approx(curve.nodes[1] / 8)
+    assert asked == [4, 4, 4]
+
+
+def test_a_body_without_an_inside_has_no_curve() -> None:
+    network = prepared(block(0, 300), 14)
+    oriented = network.oriented(network.points * 0.9)
+    assert body_curve(network, Solid(oriented, trusted=False, handles=None), RobustParams()) is None
+
+
+def test_ends_grow_as_often_as_is_asked_and_no_further(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each time a node more at one end; then the curve is fitted once more."""
+    network = prepared(block(0, 1500), 14)
+    solid = solid_of(network.oriented(0.5 * network.points))
+    asked = []
+
+    def longer(fit: ConeFit, *_: object) -> ConeCurve:
+        asked.append(len(fit.curve.nodes))
+        end = np.flatnonzero(fit.curve.degrees == 1)[:1]
+        tip = fit.curve.nodes[end] * 1.02
+        links = np.stack([end, [len(fit.curve.nodes)]], axis=1).astype(np.int32)
+        return with_nodes(fit.curve, tip, fit.curve.radii[end] / 2, links, fit.curve.levels[end])
+
+    monkeypatch.setattr("tiskel.methods.robust.body.with_tips", longer)
+    found = body_curve(network, solid, RobustParams(grow_ends=2))
+    assert found is not None
+    assert asked == [asked[0], asked[0] + 1]
+    assert len(found.curve.nodes) == asked[0] + 2

@@ -57,3 +57,16 @@ def test_the_loop_of_a_closed_wire_is_there() -> None:
     assert quality.loops.surface is not None
     assert quality.loops.surface >= 1
     assert quality.loops.points < 2000
+
+
+def test_wires_whose_graph_is_small_stay_as_they_are() -> None:
+    """Thirty short ones in a box: most of their points are in line, and yet few of them are neighbours."""
+    generator = np.random.default_rng(5)
+    ends = generator.random((2, 30, 1, 3)) * 20
+    ends[1] = ends[0] + 2 * generator.normal(size=(30, 1, 3))
+    shares = np.linspace(0, 1, 40)[:, None]
+    wires = (ends[0] + shares * (ends[1] - ends[0])).reshape(-1, 3)
+    wires += 1e-4 * generator.normal(size=wires.shape)
+    assert on_wires(wires).sum() > 2 * FEW
+    assert len(delaunay_edges(wires)) <= max(EDGES, EACH * len(wires))
+    assert loop_rows(wires, PARAMS).tolist() == list(range(1200))

@@ -10,7 +10,7 @@ from tiskel.arrays import Points
 from tiskel.geometry.clearance import Body, CloudBody, ConeBody, mesh_surface
 from tiskel.geometry.oriented import OrientedCloud, oriented_cloud
 from tiskel.geometry.round_cones import ConeGraph
-from tiskel.metrics.medialness import DIRECTIONS, medialness, medialness_at
+from tiskel.metrics.medialness import DIRECTIONS, MOST_STEPS, _highest, medialness, medialness_at
 
 RADIUS = 0.2
 CAPSULE = ConeGraph(np.array([[0.0, 0, 0], [2, 0, 0]]), np.array([[0, 1]], np.int32), np.full(2, RADIUS))
@@ -180,3 +180,40 @@ def test_quick_bodies_are_climbed_as_others_are() -> None:
     axes = np.repeat(FIRST, 50, axis=0)
     quick, slow = (medialness_at(places, axes, one) for one in (body("cones"), Slow()))
     np.testing.assert_array_equal(quick.values, slow.values)
+
+
+class HalfSpace:
+    """All that is beyond x = 0: a body without an end, that a climb never comes to the middle of."""
+
+    def clearance(self, places: Points) -> np.ndarray:
+        return np.maximum(places[:, 0], 0.0)
+
+
+def test_a_climb_in_a_body_without_end_ends_all_the_same() -> None:
+    """Each step is half of the clearance at most, and nearly in the best of twelve directions."""
+    m = medialness_at(np.array([[1.0, 0, 0], [-1, 0, 0]]), np.array([[0, 0, 1.0]] * 2), HalfSpace())
+    assert (0.5 * 1.4**MOST_STEPS) < m.best[0] < 1.5**MOST_STEPS
+    assert m.clearance.tolist() == [1, 0]
+    assert m.values[0] == pytest.approx(0, abs=1e-9)
+
+
+class Beside(HalfSpace):
+    """A body with nothing but its distances: no place looked at is inside."""
+
+    asked = 0
+
+    def distances(self, places: Points) -> np.ndarray:
+        return np.asarray(np.linalg.norm(places, axis=1) + 1)
+
+    def contains(self, places: Points) -> np.ndarray:
+        self.asked += len(places)
+        return np.zeros(len(places), bool)
+
+
+def test_where_every_place_looked_at_is_outside_none_is_higher() -> None:
+    """Each of the directions is asked for once, the farthest first."""
+    beside = Beside()
+    tried = np.random.default_rng(0).normal(size=(3, DIRECTIONS, 3))
+    _, reached = _highest(tried, np.zeros(3), beside)
+    assert reached.tolist() == [0, 0, 0]
+    assert beside.asked == 3 * DIRECTIONS

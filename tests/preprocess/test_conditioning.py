@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from tiskel import ConditioningParams, ShapeParams, TiskelError, condition, make_shape, shape_graph
 from tiskel.preprocess.capping import cap_points
-from tiskel.preprocess.conditioning import voxel_means, with_noise
+from tiskel.preprocess.conditioning import OUTLIER_NEIGHBOURS, voxel_means, with_noise
 
 POINTS = np.random.default_rng(0).random((2000, 3))
 
@@ -91,3 +91,20 @@ def test_noise_of_each_kind_has_its_size_and_seed() -> None:
     for bad in ({"noise": -1.0}, {"noise": np.nan}, {"noise_kind": "salt"}):
         with pytest.raises(TiskelError, match="noise"):
             ConditioningParams(**bad)
+
+
+def test_caps_are_added_and_counted() -> None:
+    points = make_shape(shape_graph("tunnel"), ShapeParams(count=4096))[0]
+    capped, report = condition(points, ConditioningParams(cap=True))
+    np.testing.assert_array_equal(capped[:4096], points)
+    np.testing.assert_array_equal(capped[4096:], cap_points(points))
+    assert report == (f"capped open ends with {len(capped) - 4096} points",)
+    assert len(capped) > 4096
+
+
+def test_of_few_points_none_is_an_outlier_unless_many_lie_in_one_place() -> None:
+    few = POINTS[:OUTLIER_NEIGHBOURS]
+    np.testing.assert_array_equal(condition(few, ConditioningParams(outliers=True))[0], few)
+    kept, report = condition(np.concatenate([few, np.zeros((60, 3))]), ConditioningParams(outliers=True))
+    np.testing.assert_array_equal(kept, few)
+    assert report == ("removed 60 outliers",)
