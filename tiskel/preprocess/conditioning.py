@@ -97,8 +97,6 @@ def _inside(points: Points, box: tuple[float, ...]) -> Mask:
 
 def _inliers(points: Points) -> Mask:
     """Statistical outlier removal (Rusu et al. 2008); stray points go first, and have no part in the statistics."""
-    if len(points) <= OUTLIER_NEIGHBOURS:
-        return np.ones(len(points), bool)
     body = ~stray_points(points)
     within = np.ascontiguousarray(points[body])
     if len(within) <= OUTLIER_NEIGHBOURS:
