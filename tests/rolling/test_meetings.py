@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 
 from tiskel import RollParams, RollStatus, roll_on
+from tiskel.rolling.ambient import AmbientRate, Ground, frame_about
+from tiskel.rolling.free_solution import _at_second
+from tiskel.rolling.inputs import constant
+from tiskel.rolling.second import Surroundings
 from tiskel.surfaces.implicit import LevelSet
 from tiskel.surfaces.implicit_bodies import Plane, Union
 
@@ -64,3 +68,19 @@ def test_a_second_place_that_is_too_tight_ends_the_run_there(bend: float, status
         assert r.t[-1] == pytest.approx((1 - RADIUS) / RADIUS, abs=1e-4)
     else:
         assert r.contact[-1] == pytest.approx([1, 0, RADIUS + 1.8 - 0.7], abs=1e-3)
+
+
+@pytest.mark.parametrize("surface", [Plane(), valley(pi / 2)])
+def test_a_ball_changes_to_the_second_place_only_where_there_is_one(surface: Any) -> None:
+    """Where it touches floor and wall; on the floor alone there is nothing to change to."""
+    ground = Ground(surface, 1.0, RADIUS)
+    place = np.array([1 - RADIUS, 0, 0])
+    rate = AmbientRate(ground, constant(AHEAD), "object", place)
+    y = np.concatenate([np.zeros(3), [1, 0, 0, 0], frame_about(ground.touch(place).z, (1, 0, 0))[:, 0]])
+    changed = _at_second(rate, Surroundings.of(ground), 0.0, y)
+    if isinstance(surface, Plane):
+        assert changed is None
+    else:
+        assert changed is not None
+        np.testing.assert_allclose(rate.place(changed), [1, 0, RADIUS], atol=1e-9)
+        np.testing.assert_array_equal(changed[3:7], y[3:7])  # its pose stays
