@@ -28,6 +28,7 @@ FIT = 2.0  # a pair of crossings may cost: distance in reaches, and one less the
 DOUBLE = 0.5  # price of a reach of curve that both tiles give, or neither; a crossing without a partner costs 1
 OFF = 0.02  # price of a cut at the rim of the slab, and a tenth of what pairs cost: decides where all else fits
 WIDER = 0.01  # what a wide slab must be better by
+ROUNDING = 1e-9  # of the half width: so far may rounding move a node beyond a slab, and a cut then miss its edge
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,7 @@ class Slab:
         return np.concatenate(found), partner
 
     def _level(self, half: float, below: list[Cut]) -> Iterator[Cut]:
-        inside = np.abs(self.x) <= half
+        inside = np.abs(self.x) <= half * (1 + ROUNDING)
         joins = np.concatenate([self.edges, self.links])
         joins = joins[inside[joins].all(axis=1)]
         label = component_labels(len(self.nodes), joins)
