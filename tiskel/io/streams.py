@@ -106,7 +106,7 @@ def write_bytes(target: str | Path, data: bytes) -> None:
         _to_standard_output(data)
         return
     check_target(target)
-    path = Path(os.path.realpath(target))  # a link stays, what it leads to is replaced
+    path = _place_of(target)
     try:
         if path.exists() and not path.is_file():  # a device or a named pipe takes bytes as they come
             path.write_bytes(data)
@@ -128,7 +128,7 @@ def check_target(target: str | Path) -> None:
     if str(target) == STANDARD:
         return
     try:
-        path = Path(os.path.realpath(target))
+        path = _place_of(target)
         if path.is_dir():
             raise TiskelError(f"{target} is a directory; name a file in it")
         if path.exists() and not path.is_file():
@@ -145,6 +145,12 @@ def check_target(target: str | Path) -> None:
         ) from None
     if space is not None and space.f_blocks and space.f_bavail == 0:
         raise TiskelError(f"cannot write {target}: no space is left in {folder}; free some, or name another folder")
+
+
+def _place_of(target: str | Path) -> Path:
+    """Return what is replaced, which is what a link leads to; pipes have no other name than their link in /dev/fd."""
+    path = Path(target)
+    return path if path.exists() and not path.is_file() else Path(os.path.realpath(target))
 
 
 def _to_standard_output(data: bytes) -> None:
