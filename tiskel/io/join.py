@@ -145,7 +145,7 @@ def _read(file: Path, cloud: Path, part: Part, index: TileIndex, params: JoinPar
 def _nodes(skeleton: Skeleton, points: Points, chosen: Integers) -> Indices:
     """Return (k,) the node of chosen points of a part (n, 3): as the skeleton says, or the nearest."""
     at = skeleton.input_rows
-    if len(at) == len(points) and np.array_equal(points[at], skeleton.cloud):
+    if np.array_equal(np.sort(at), np.arange(len(points))) and np.array_equal(points[at], skeleton.cloud):
         node = np.empty(len(points), np.int32)
         node[at] = skeleton.node_of_point
         return np.asarray(node[chosen])
