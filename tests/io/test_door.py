@@ -1,6 +1,7 @@
 """Stage files whose content contradicts itself: one line names element, row, property and value."""
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from plyfile import PlyData
 
 from tiskel import LbcParams, ShapeParams, TiskelError, contract, extract_skeleton, make_shape, shape_graph
 from tiskel.io import ply
+from tiskel.io.stages import door
 from tiskel.io.stages.contraction import dump_contraction, parse_contraction
 from tiskel.io.stages.skeleton import dump_skeleton, parse_skeleton
 
@@ -28,13 +30,21 @@ def files() -> dict[str, bytes]:
 
 def changed(data: bytes, element: str, name: str, row: int, value: float) -> bytes:
     """Return a stage file with one value changed."""
+
+    def edit(columns: dict[str, Any]) -> dict[str, Any]:
+        columns[name][row] = value
+        return columns
+
+    return edited(data, element, edit)
+
+
+def edited(data: bytes, element: str, edit: Callable[[dict[str, Any]], dict[str, Any]]) -> bytes:
+    """Return a stage file with the columns of an element changed."""
     file = ply.parse(data, "a.ply")
     parts = []
     for part in file.elements:
-        table = part.data.copy()
-        if part.name == element:
-            table[name][row] = value
-        parts.append(ply.element(part.name, {key: table[key] for key in table.dtype.names}))
+        columns = {key: part.data[key].copy() for key in part.data.dtype.names}
+        parts.append(ply.element(part.name, edit(columns) if part.name == element else columns))
     made = PlyData(parts, text=False, byte_order="<", comments=file.comments)
     return bytes(made.header.encode() + b"\n" + b"".join(part.data.tobytes() for part in parts))
 
@@ -51,6 +61,8 @@ CHANGES = [
     ("robust", "cloud", "merged_step", 3, -2, "row 3: merged_step is -2"),
     ("robust", "history", "x", 3, np.nan, "'history', row 3"),
     ("lbc", "vertex", "ring_end", 3, -1, "row 3: ring_end is -1"),
+    ("lbc", "vertex", "ring_end", -1, 10**6, "rings end at 1000000, "),
+    ("lbc", "vertex", "ring_end", 3, 10**6, "rings end at "),
     ("lbc", "vertex", "closed", 3, 7, "row 3: closed is 7"),
     ("lbc", "ring_member", "place", 3, 300, "'ring_member', row 3: place is 300"),
     ("skeleton", "vertex", "radius", 1, -0.5, "row 1: radius is -0.5, it must be 0 or more"),
@@ -59,6 +71,7 @@ CHANGES = [
     ("skeleton", "edge", "vertex1", 1, 999, "'edge', row 1: vertex1 is 999"),
     ("skeleton", "edge_source", "bridged", 1, 3, "row 1: bridged is 3"),
     ("skeleton", "branch", "count", 0, -1, "row 0: count is -1"),
+    ("skeleton", "branch", "count", 0, 10**6, "branches have 10000"),
     ("skeleton", "branch_node", "node", 1, -1, "row 1: node is -1"),
     ("skeleton", "cloud", "node", 4, -1, "'cloud', row 4: node is -1"),
     ("skeleton", "contracted", "row", 4, 300, "'contracted', row 4: row is 300"),
@@ -76,6 +89,49 @@ def test_one_wrong_value_is_named(
         read(changed(files[kind], element, name, row, value), "a.ply")
     assert said in str(error.value)
     assert str(error.value).startswith("a.ply is a damaged")
+
+
+def shorter(columns: dict[str, Any]) -> dict[str, Any]:
+    return {name: values[:-1] for name, values in columns.items()}
+
+
+@pytest.mark.parametrize(
+    ("kind", "element", "edit", "said"),
+    [
+        ("robust", "vertex", shorter, "merged_into is -1, which leads to no point of element 'vertex'"),
+        ("robust", "history", shorter, "rows, 300 are left after each step"),
+        ("skeleton", "edge_source", shorter, "sources of edges for"),
+        ("skeleton", "vertex", lambda c: c | {"radius_source": c["radius"]}, "element 'vertex' must be single whole"),
+        ("skeleton", "cloud", lambda c: {n: v for n, v in c.items() if n != "x"}, "'cloud' has no property x"),
+    ],
+    ids=["points", "history", "sources", "kind", "property"],
+)
+def test_elements_that_do_not_fit_each_other_are_told(
+    kind: str, element: str, edit: Any, said: str, files: dict[str, bytes]
+) -> None:
+    read: Any = parse_skeleton if kind == "skeleton" else parse_contraction
+    with pytest.raises(TiskelError, match=r"a\.ply is a damaged") as error:
+        read(edited(files[kind], element, edit), "a.ply")
+    assert said in str(error.value)
+
+
+def test_an_edge_from_a_node_to_itself_or_laid_twice_is_told(files: dict[str, bytes]) -> None:
+    edge = ply.parse(files["skeleton"], "a.ply")["edge"].data
+    loop = changed(files["skeleton"], "edge", "vertex1", 2, edge["vertex2"][2])
+    with pytest.raises(TiskelError, match=f"'edge', row 2: it joins node {edge['vertex2'][2]} to itself"):
+        parse_skeleton(loop, "a.ply")
+    twice = changed(files["skeleton"], "edge", "vertex1", 2, edge["vertex2"][0])
+    twice = changed(twice, "edge", "vertex2", 2, edge["vertex1"][0])
+    said = f"'edge', row 2: it joins nodes {edge['vertex2'][0]} and {edge['vertex1'][0]} once more"
+    with pytest.raises(TiskelError, match=said):
+        parse_skeleton(twice, "a.ply")
+
+
+def test_a_file_may_ask_for_so_much_memory_and_no_more() -> None:
+    most = door.ROOM + 1000 * door.PER_BYTE
+    door.check_room(most, 1000, "the rings")
+    with pytest.raises(ValueError, match="the rings would take 200 MB, the file has 0 kB"):
+        door.check_room(most + 1, 1000, "the rings")
 
 
 def test_points_merged_in_a_circle_are_refused(files: dict[str, bytes]) -> None:

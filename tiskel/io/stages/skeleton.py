@@ -153,8 +153,11 @@ def _edges(edge: Any, count: int) -> Edges:
     loops = np.flatnonzero(edges[:, 0] == edges[:, 1])
     if len(loops):
         raise ValueError(f"element 'edge', row {loops[0]}: it joins node {edges[loops[0], 0]} to itself")
-    pairs = np.asarray(np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)[1].ravel(), np.int32)
-    door.once(pairs, "edge", "the pair of nodes")
+    first = np.unique(np.sort(edges, axis=1), axis=0, return_index=True)[1]
+    again = np.setdiff1d(np.arange(len(edges)), first)
+    if len(again):
+        a, b = edges[again[0]].tolist()
+        raise ValueError(f"element 'edge', row {again[0]}: it joins nodes {a} and {b} once more")
     return edges
 
 
