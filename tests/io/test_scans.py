@@ -1,8 +1,12 @@
 """Scans as scanners and surveyors give them: LAS, LAZ, E57, PTX; classes, columns, and what packed files become."""
 
 import gzip
+import importlib.util
 import io
+import re
+import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +16,7 @@ from reference.e57 import POINTS as POINTS_E57
 from reference.e57 import SCAN as SCAN_E57
 from tiskel import TiskelError, load_cloud
 from tiskel.io.clouds import parse_cloud
-from tiskel.io.formats import las
+from tiskel.io.formats import e57, las
 
 POINTS = np.round(np.random.default_rng(0).random((60, 3)) * 100 + [694386, 5155487, 380], 3)
 CLASSES = np.arange(60) % 5
@@ -76,6 +80,28 @@ def test_e57_stands_in_the_world() -> None:
     np.testing.assert_allclose(cloud.properties["intensity"], INTENSITIES)
 
 
+def test_without_the_reader_of_e57_its_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
+    with pytest.raises(TiskelError, match=r"a\.e57: E57 needs a reader; pip install 'tiskel\[e57\]'"):
+        parse_cloud(SCAN_E57, "a.e57")
+
+
+@pytest.mark.parametrize("proc", [True, False])
+def test_the_reader_of_e57_leaves_no_file_behind(proc: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It reads from a name only; where no /proc names what has none, it gets one."""
+    e57_reader = pytest.importorskip("e57")
+    exists = Path.exists
+    monkeypatch.setattr(Path, "exists", lambda path: (proc or "/proc" not in str(path)) and exists(path))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    arrays = e57.arrays_of(SCAN_E57)
+    assert set(arrays) == {"points", "intensity", "red", "green", "blue"}
+    np.testing.assert_allclose(arrays["points"], POINTS_E57, atol=1e-9)
+    assert list(tmp_path.iterdir()) == []
+    found = SimpleNamespace(points=arrays["points"], intensity=np.zeros(0), color=np.zeros((0, 3)))
+    monkeypatch.setattr(e57_reader, "read_points", lambda name: found if Path(name).read_bytes() == SCAN_E57 else None)
+    assert set(e57.arrays_of(SCAN_E57)) == {"points"}
+
+
 def test_a_compiled_reader_that_dies_is_one_line() -> None:
     """A chunk table that promises 4 thousand million chunks: the reader of LAZ aborts."""
     data = bytearray(las_bytes(packed=True))
@@ -116,6 +142,8 @@ def test_ptx_of_two_scans_is_turned_and_shifted_and_lost_pulses_have_no_place() 
         (SCAN.replace("2\n2\n", "2\n"), "no header of a scan"),
         (SCAN + "3\n", "no header of a scan"),
         (SCAN.replace("2\n2\n", "0\n2\n"), "promises 0 points"),
+        (SCAN + re.sub(r" \.\d\n", "\n", SCAN), "rows of different lengths"),
+        (re.sub(r" \.\d\n", " 1 2\n", SCAN), "4 rows of 5 numbers after line 10, 4 are promised"),
     ],
 )
 def test_broken_ptx_is_refused_with_a_reason(data: str, said: str) -> None:
@@ -157,6 +185,16 @@ def test_where_the_suffix_says_nothing_the_content_does() -> None:
     assert len(parse_cloud(b"OFF 20 0 0\n" + rows, "scan").points) == 20
     with pytest.raises(TiskelError, match=r"unknown kind of file '\.dat'"):
         parse_cloud(b"to be or not to be\nthat is the question\n" * 9, "scan.dat")
+
+
+def test_gzip_files_that_are_cut_short_or_empty_are_told() -> None:
+    packed = gzip.compress(b"1 2 3\n" * 100)
+    for data, said in (
+        (packed[:-9], r"a\.xyz\.gz is no whole gzip file: .*; pack it again"),
+        (gzip.compress(b""), r"a\.xyz\.gz is empty; check how it was made"),
+    ):
+        with pytest.raises(TiskelError, match=said):
+            parse_cloud(data, "a.xyz.gz")
 
 
 def test_bombs_are_refused() -> None:

@@ -1,6 +1,7 @@
 """Scans in E57, the exchange format of laser scanners, by a reader in Rust (extra ``e57``)."""
 
 import importlib.util
+import os
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -46,13 +47,17 @@ def arrays_of(data: bytes) -> dict[str, npt.NDArray[Any]]:
     """Return the points, intensity and colour; raises what the reader raises, which takes nothing but a path."""
     import e57
 
-    with tempfile.NamedTemporaryFile(prefix="tiskel-", suffix=".e57", delete=False) as file:
-        file.write(data)
-        file.flush()
-        path = Path(f"/proc/self/fd/{file.fileno()}")
-        if path.exists():  # a file without a name is none that a killed run leaves behind
-            Path(file.name).unlink()
-        found = e57.read_points(str(path if path.exists() else file.name))
+    handle, name = tempfile.mkstemp(prefix="tiskel-", suffix=".e57")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            path = Path(f"/proc/self/fd/{handle}")
+            if path.exists():  # a file without a name is none that a killed run leaves behind
+                Path(name).unlink()
+            found = e57.read_points(str(path if path.exists() else name))
+    finally:
+        Path(name).unlink(missing_ok=True)
     points = np.array(found.points, np.float64).reshape(-1, 3)
     intensity, colour = np.asarray(found.intensity), np.asarray(found.color)
     arrays = {"points": points} | ({"intensity": intensity.ravel()} if intensity.size == len(points) else {})
