@@ -13,7 +13,7 @@ from reference.fixtures import Runner, one_error_line
 from tiskel import Curve, Skeleton, TiskelError, load_curve, make_shape, read_skeleton, shape_graph
 from tiskel.geometry.branch_table import branch_table
 from tiskel.io.clouds import dump_cloud
-from tiskel.io.curves import as_skeleton, parse_curve
+from tiskel.io.curves import as_skeleton, holds_curve, parse_curve
 from tiskel.io.exports import EXPORTS, branches_csv, export_of, write_skeleton
 from tiskel.io.measurable import gather
 
@@ -88,6 +88,14 @@ def vtp(where: str, *, zipped: bool) -> bytes:
     )
 
 
+def text_vtp(ends: str) -> bytes:
+    """Return three points and lines along them that end at so many places, in text."""
+    points = '<Points><DataArray type="Float64" NumberOfComponents="3">0 0 0 1 0 0 1 1 0</DataArray></Points>'
+    lines = f'<Lines><DataArray Name="connectivity" type="Int64">0 1 2</DataArray>{{}}{ends}</DataArray></Lines>'
+    lines = lines.format('<DataArray Name="offsets" type="Int64">')
+    return f"<VTKFile><PolyData><Piece>{points}{lines}</Piece></PolyData></VTKFile>".encode()
+
+
 DXF = """0 SECTION 2 ENTITIES 0 LINE 8 0 10 0 20 0 30 0 11 1 21 0 31 0 0 POLYLINE 66 1 70 8 0 VERTEX 10 1 20 0 30 0
  0 VERTEX 10 1 20 1 30 0 0 SEQEND 0 ENDSEC 0 EOF"""
 FOREIGN = {
@@ -97,7 +105,7 @@ FOREIGN = {
     "raw.vtp": vtp("raw", zipped=False),
     "lines.dxf": "\n".join(DXF.split()).encode(),
     "flat.dxf": b"0\nLWPOLYLINE\n90\n3\n70\n0\n10\n0\n20\n0\n10\n1\n20\n0\n10\n1\n20\n1\n0\nEOF\n",
-    "gel.graph": b"n 0 0 0\nn 1 0 0\nn 1 1 0\nc 0 1\nc 1 2\n",
+    "gel.graph": b"# made elsewhere\n\nn 0 0 0\nn 1 0 0\nn 1 1 0\nc 0 1\nc 1 2\n",
     "pairs.csv": b"x1;y1;z1;x2;y2;z2\n0;0;0;1,0;0;0\n1;0;0;1;1;0\n",
     "lines.obj": b"# made elsewhere\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nl 1/1 2/2 3\nl -1 -3\n",
     "tree.swc": b"# comment\n\n 10 2 0 0 0 1 -1\n 20 2 1 0 0 1 10\n 5 2 1 1 0 1 20\n",
@@ -144,6 +152,27 @@ def test_points_and_the_pairs_of_their_rows_in_two_files(first: int, tmp_path: P
     assert load_curve(tmp_path / "a_nodes.csv").edges.tolist() == [[0, 1], [1, 2]]
 
 
+@pytest.mark.parametrize("name", ["place.vtp", "lines.ply", "graph.json", "tree.swc", "graphml"])
+def test_curves_on_standard_input_are_told_by_their_first_bytes(name: str, skeleton: Skeleton) -> None:
+    data, kind = (EXPORTS["graphml"](skeleton), "a.graphml") if name == "graphml" else (FOREIGN[name], name)
+    found, same = parse_curve(b" \n" + data if kind == "graph.json" else data, "-"), parse_curve(data, kind)
+    assert found.name == "stdin"
+    np.testing.assert_array_equal(found.nodes, same.nodes)
+    assert len(found.edges) == len(same.edges) > 0
+
+
+def test_what_holds_edges_is_a_curve(skeleton: Skeleton) -> None:
+    cloud = {suffix: dump_cloud(np.eye(3), f"a.{suffix}") for suffix in ("ply", "xyz", "csv")}
+    for data, name in (
+        *((FOREIGN[name], name) for name in ("lines.ply", "lines.obj", "pairs.csv", "tree.swc", "raw.vtp")),
+        (EXPORTS["ply"](skeleton), "skeleton.ply"),
+        (FOREIGN["graph.json"], "-"),
+    ):
+        assert holds_curve(data, name), name
+    for data, name in (*((cloud[kind], f"a.{kind}") for kind in cloud), (b"v 0 0 0\n", "a.obj"), (cloud["ply"], "-")):
+        assert not holds_curve(data, name), name
+
+
 BROKEN = {
     "far.vtp": (FOREIGN["raw.vtp"].replace(b'offset="0"', b'offset="9999"'), "not a valid VTP"),
     "bomb.vtp": (b'<!DOCTYPE a [<!ENTITY b "c">]><VTKFile/>', "declares a document type"),
@@ -163,6 +192,23 @@ BROKEN = {
     "bare.graphml": (b"<graphml", "not a valid GRAPHML"),
     "bytes.obj": (b"\xff\xfe\x00", "not a valid OBJ"),
     "what.dwg": (b"", "unknown kind of curve"),
+    "packer.vtp": (b'<VTKFile compressor="vtkLZ4DataCompressor"/>', "packed by vtkLZ4DataCompressor"),
+    "short.vtp": (FOREIGN["place.vtp"].replace(b"JAAAA", b"JgAAA"), "an array promises 42 bytes, 40 are there"),
+    "huge.vtp": (FOREIGN["place.vtp"].replace(b"JAAAA", b"OTk5O"), "promises 943274301 bytes, the file is smaller"),
+    "bare.vtp": (b"<VTKFile><Piece/></VTKFile>", "a piece has no points"),
+    "long.vtp": (text_vtp(ends="2 9"), "lines end at 9, 3 places are listed"),
+    "fewer.vtp": (text_vtp(ends="2 1"), "lines end at 1, 3 places are listed"),
+    "binary.dxf": (b"AutoCAD Binary DXF\r\n\x1a", "it is a binary DXF; save it as text"),
+    "letters.json": (b'{"nodes": [[0, "a", 1]], "edges": []}', "nodes hold something that is no number"),
+    "half.json": (b'{"nodes": [[0, 0, 0]], "edges": [[0, 0.5]]}', "edges hold something that is no whole number"),
+    "radii.json": (b'{"nodes": [[0, 0, 0]], "edges": [], "radius": [1, 2]}', "2 radii for 1 nodes"),
+    "thin.json": (b'{"nodes": [[0, 0, 0]], "edges": [], "radius": [-1]}', "the radius of node 0 is -1"),
+    "twins.json": (b'{"nodes": [{"id": 1}, {"id": 1}]}', "a node is there twice"),
+    "deep.json": (b"[" * 3_000_000, "has parts that would take 257 MB of memory, it has 2 MB"),
+    "nan.csv": (b"x1,y1,z1,x2,y2,z2\n0,0,0,nan,0,0\n", "a segment has an end that is not finite"),
+    "none.swc": (b"# nothing\n", "it holds no sample"),
+    "twins.swc": (b"1 2 0 0 0 1 -1\n1 2 1 0 0 1 -1\n", "a sample is there twice"),
+    "words.graph": (b"n 0 0 0\nmany words\n", "a line begins with 'many', not with n or c"),
 }
 
 
@@ -255,3 +301,10 @@ def test_the_table_of_branches_of_a_loop_and_of_a_bridge() -> None:
                  bridged=np.array([False, True]))  # fmt: skip
     (way,) = branch_table(path)
     assert (way.kind, way.bridged, loop.bridged) == ("end-end", 0.75, 0.0)
+
+
+def test_a_node_alone_is_no_polyline(tmp_path: Path) -> None:
+    nodes = np.array([[0.0, 0, 0], [1, 0, 0], [5, 5, 5]])
+    data = EXPORTS["dxf"](as_skeleton(Curve(nodes, np.array([[0, 1]], np.int32))))
+    assert data.count(b"POLYLINE") == data.count(b"SEQEND") == 1
+    assert parse_curve(data, "a.dxf").nodes.tolist() == nodes[:2].tolist()

@@ -130,6 +130,18 @@ def test_broken_ply_is_refused_with_a_reason(name: str) -> None:
     assert said in str(error.value)
 
 
+def test_binary_ply_with_lists_elsewhere_and_with_a_face_too_few() -> None:
+    head = PLY.replace(b"ascii", b"binary_little_endian").replace(b"vertex 2", b"vertex 3")
+    rows, list_of_three = np.arange(9, dtype="<f4").tobytes(), struct.pack("<B3i", 3, 0, 1, 2)
+    strip = head.replace(b"end_", b"element strip 1\nproperty list uchar int at\nend_")
+    found = parse_cloud(strip + rows + list_of_three, "a.ply")
+    np.testing.assert_array_equal(found.points, np.arange(9).reshape(3, 3))
+    faces = head.replace(b"end_", b"element face 2\nproperty list uchar int vertex_indices\nend_")
+    with pytest.raises(TiskelError, match=r"element 'face': .*early end-of-file"):
+        ply.read(faces + rows + list_of_three, "a.ply")
+    assert ply.read(faces + rows + list_of_three * 2, "a.ply").faces.tolist() == [[0, 1, 2]] * 2
+
+
 def test_faces_of_a_stage_file_without_vertices_are_left_out() -> None:
     data = PLY.replace(b"element vertex", b"comment tiskel 1 cloud\nelement cloud")
     data = data.replace(b"end_", b"element face 1\nproperty list uchar int vertex_index\nend_")

@@ -16,6 +16,8 @@ def test_pcd_of_every_layout_and_type(layout: str) -> None:
     cloud = parse_cloud(pcd_bytes(layout), "a.pcd")
     np.testing.assert_array_equal(cloud.points, np.stack([VALUES[axis] for axis in "xyz"], axis=1))
     assert set(cloud.properties) == {"rgb"}
+    blank = pcd_bytes(layout).replace(b"\nFIELDS", b"\n\n# by hand\nFIELDS")
+    np.testing.assert_array_equal(parse_cloud(blank, "-").points, cloud.points)
     np.testing.assert_array_equal(cloud.properties["rgb"], VALUES["rgb"])
 
 
@@ -40,6 +42,7 @@ PCD_BROKEN = {
     "no z": (pcd_bytes("binary", FIELDS="_ w rgb y x hist _"), "has no field z"),
     "unknown layout": (pcd_bytes("binary", DATA="octal"), "DATA 'octal' is unknown"),
     "no header": (b"1 2 3\n4 5 6\n", "no header that ends with DATA"),
+    "a number more": (pcd_bytes("ascii").replace(b"0 0 0 ", b"0 0 0 0 "), "rows of 14 numbers, the header promises 12"),
     "words": (pcd_bytes("ascii").replace(b"0 0 0 ", b"0 a 0 ", 1), "could not convert string 'a'"),
 }
 

@@ -35,6 +35,8 @@ READ = {
     "Fortran": "5.0D-1 1.5d+00 2.5D0\n3.5D0 -4.5D0 0.55D1\n",
     "commas and spaces": "0.5, 1.5, 2.5\n3.5, -4.5, 5.5\n",
     "separators at the ends": "x;y;z;\n.5;1.5;2.5;\n3.5;-4.5;5.5;\n",
+    "a comment that names no column": "# one tree, of two\n# made here\n0.5 1.5 2.5\n3.5 -4.5 5.5\n",
+    "commas in words": "x;y;z;tree\n.5;1.5;2.5;oak, old\n3.5;-4.5;5.5;elm\n",
     "words behind": "0.5 1.5 2.5 oak\n3.5 -4.5 5.5 elm\n",
 }
 
@@ -47,6 +49,11 @@ def test_tables_that_are_read(name: str) -> None:
 @pytest.mark.parametrize("coding", ["utf-16", "utf-8-sig"])
 def test_tables_with_a_byte_order_mark(coding: str) -> None:
     np.testing.assert_array_equal(text.read(READ["quoted cells"].encode(coding), "a").points, POINTS)
+
+
+def test_nan_of_windows_is_no_number() -> None:
+    found = text.read(b"1 2 3\n-nan(ind) 5 6\n7 8 NAN(SNAN)\n", "a").points
+    np.testing.assert_array_equal(found, [[1, 2, 3], [np.nan, 5, 6], [7, 8, np.nan]])
 
 
 def test_rows_numbered_as_r_does() -> None:
@@ -75,6 +82,13 @@ REFUSED = {
     "a superscript": ("²\n1 2 3\n", "the header names 1 columns"),
     "two scans": ("2\n1 2 3\n1 2 3\n1\n4 5 6\n", "promises 2 points, 4 follow; export it again, one cloud per file"),
     "UTF-16 without a mark": ("1\x00 \x002\x00", "is not text in UTF-8"),
+    "an underscore in a number": ("1 2 3\n4 5_0 6\n", "a row is no numbers; every row needs three numbers"),
+    "names of rows that count nothing": ("x y z\noak 2 3 4\nelm 5 6 7\n", "the header names 3 columns"),
+    "a cell without an end": (
+        'x,y,z\n"1","2","3' + "0" * 200_000 + '"\n',
+        "its quoted cells cannot be read (field larger",
+    ),
+    "a long word in quotes": ('"' + "x" * 200_000 + '" y\n1 2 3\n', "the header names 1 columns"),
     "atoms": ("2\n\nC 1 2 3\nH 4 5 6\n", "words and numbers"),
 }
 
