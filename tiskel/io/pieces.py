@@ -108,14 +108,16 @@ def hash_of(path: Path) -> str:
 
 
 def _opened(path: Path, packed: bool) -> IO[bytes]:
-    if path.is_dir():
-        raise TiskelError(f"{path} is a directory; name a file in it")
     try:
+        if path.is_dir():
+            raise TiskelError(f"{path} is a directory; name a file in it")
         return gzip.open(path) if packed else path.open("rb")  # type: ignore[return-value]
     except FileNotFoundError:
         raise TiskelError(f"no file {path}; check the path") from None
-    except OSError as error:
-        raise TiskelError(f"cannot read {path}: {error.strerror}") from None
+    except (OSError, ValueError) as error:  # a null character
+        raise TiskelError(
+            f"cannot read {path}: {getattr(error, 'strerror', None) or error}; check the path and its permissions"
+        ) from None
 
 
 def _first_bytes(path: Path, packed: bool = False) -> bytes:
@@ -161,8 +163,8 @@ def _numpy_rows(start: bytes) -> tuple[np.dtype[Any], int, int] | None:
         version = np.lib.format.read_magic(stream)
         read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
         shape, fortran, dtype = read(stream)
-    except ValueError:
-        return None
+    except Exception:  # of the tokenizer, too
+        return None  # read whole, which says what is wrong
     if fortran or dtype.hasobject or len(shape) != (1 if dtype.names else 2):
         return None
     if dtype.names is None:
