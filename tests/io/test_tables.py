@@ -89,6 +89,7 @@ REFUSED = {
         "its quoted cells cannot be read (field larger",
     ),
     "a long word in quotes": ('"' + "x" * 200_000 + '" y\n1 2 3\n', "the header names 1 columns"),
+    "thousands": ("x;y;z\n1,000,000;2;3\n", "'1,000,000' for a number"),
     "atoms": ("2\n\nC 1 2 3\nH 4 5 6\n", "words and numbers"),
 }
 

@@ -92,6 +92,16 @@ def test_a_long_second_end_stays_though_another_way_is_near() -> None:
     assert web.nodes[web.torn].tolist() == [[pytest.approx(-0.4, abs=STEP), pytest.approx(1.3), 0]]
 
 
+def test_a_limb_cut_at_its_very_joint_leaves_nothing_torn() -> None:
+    """The way goes on round a corner there, and across the plane in both."""
+    corner: Way = [(-20, 0), (-0.2, 0), (-0.2, 1.3), (10, 1.3)]
+    low = drawn(corner, [(-0.2, 0), (10, 0)], torn=[(10, 0), (10, 1.3)])
+    web = sewn(low, drawn([(-0.2, 1.3), (20, 1.3)], tile=1))
+    assert counts(web) == (1, 0, 2)
+    assert not web.torn.any()
+    assert web.graph().length == pytest.approx(19.8 + 1.3 + 20.2)
+
+
 def test_a_limb_that_turns_round_at_the_plane_is_no_stub() -> None:
     """Its second end leads to no joint, but back into the other side and to an end there."""
     low = drawn([(10, 0), (-8, 0), (-8, 1.2), (10, 1.2)], radius=8.0, torn=[(10, 0), (10, 1.2)])

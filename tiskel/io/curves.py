@@ -142,9 +142,8 @@ def holds_curve(data: bytes, source: str | Path) -> bool:
     kind = Path(source).suffix.lower() if str(source) != STANDARD else _kind(data)
     if kind in (".ply", ".obj", ".csv", ".tsv", ".txt"):
         head = data[: max(data.find(HEADER_END), 0)]
-        edged = b"\nelement edge" in head and stage_of(data) != "contraction"
         return (
-            edged
+            b"\nelement edge" in head
             if kind == ".ply"
             else OBJ_LINE.search(data) is not None
             if kind == ".obj"
