@@ -11,12 +11,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from reference.dying import dies
 from reference.e57 import INTENSITIES
 from reference.e57 import POINTS as POINTS_E57
 from reference.e57 import SCAN as SCAN_E57
 from tiskel import TiskelError, load_cloud
 from tiskel.io.clouds import parse_cloud
 from tiskel.io.formats import e57, las
+from tiskel.io.formats.isolated import read_apart
 
 POINTS = np.round(np.random.default_rng(0).random((60, 3)) * 100 + [694386, 5155487, 380], 3)
 CLASSES = np.arange(60) % 5
@@ -103,12 +105,21 @@ def test_the_reader_of_e57_leaves_no_file_behind(proc: bool, tmp_path: Path, mon
 
 
 def test_a_compiled_reader_that_dies_is_one_line() -> None:
-    """A chunk table that promises 4 thousand million chunks: the reader of LAZ aborts."""
+    with pytest.raises(TiskelError, match=r"a\.laz is not a valid LAZ file: its reader died \(-6\)"):
+        read_apart(dies, b"", "a.laz", "LAZ")
+
+
+@pytest.mark.parametrize("at_the_end", [False, True])
+def test_laz_with_more_chunks_than_points_is_refused(at_the_end: bool) -> None:
+    """Its reader makes room for all of them, and aborts."""
     data = bytearray(las_bytes(packed=True))
     start = int.from_bytes(data[96:100], "little")
     table = int.from_bytes(data[start : start + 8], "little")
     data[table + 4 : table + 8] = b"\xff\xff\xff\x7f"
-    with pytest.raises(TiskelError, match="is not a valid LAZ file: memory allocation"):
+    if at_the_end:
+        data += data[start : start + 8]
+        data[start : start + 8] = b"\xff" * 8
+    with pytest.raises(TiskelError, match="table promises 2147483647 chunks for 60 points"):
         parse_cloud(bytes(data), "a.laz")
 
 

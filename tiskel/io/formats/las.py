@@ -17,6 +17,7 @@ SHORTEST, LONG = 227, 375  #: bytes of a header up to version 1.3, and of one of
 VLR, EVLR = 54, 60  #: least bytes of a record of variable length in front of the points, and behind them
 LASZIP = b"laszip encoded"  #: user of the record that says how LAZ is packed
 CHUNK, ANY_CHUNK = 12, 0xFFFFFFFF  #: where it says how many points a chunk holds, and that each chunk says it itself
+AT_THE_END = (1 << 64) - 1  #: in place of where the table of chunks is: its place is in the last eight bytes
 PACKED = 0x80  #: bit of the point format that says LAZ
 KEPT = ("intensity", "classification", "return_number", "number_of_returns", "red", "green", "blue")
 
@@ -78,6 +79,8 @@ def _check(data: bytes, name: str) -> None:
     if data[104] & PACKED:
         check_unpacked(count * size, len(data), name)
         check_unpacked(_chunk(data, start) * size, len(data), name, "has chunks of")
+        if (chunks := _chunks(data, start)) > count:
+            raise TiskelError(f"{name}: its table promises {chunks} chunks for {count} points; export it again")
     elif start + count * size > len(data):
         raise TiskelError(
             f"{name}: the header promises {count} points of {size} bytes, {len(data) - start} follow; copy it again"
@@ -89,6 +92,14 @@ def _chunk(data: bytes, start: int) -> int:
     found = data.find(LASZIP, 0, start)
     points = _number(data, found - 2 + VLR + CHUNK, 4) if found >= 0 else 0
     return 0 if points == ANY_CHUNK else points
+
+
+def _chunks(data: bytes, start: int) -> int:
+    """Return how many chunks the table of LAZ has, for each of which its reader makes room; 0 where it is not found."""
+    table = _number(data, start, 8)
+    if table == AT_THE_END:
+        table = _number(data, len(data) - 8, 8)
+    return _number(data, table + 4, 4) if table + 8 <= len(data) else 0
 
 
 def _number(data: bytes, at: int, size: int) -> int:
