@@ -4,6 +4,7 @@ import gzip
 import importlib.util
 import io
 from collections.abc import Callable
+from datetime import date
 from functools import partial
 from typing import Any
 
@@ -35,7 +36,7 @@ def originals(*, stages: bool = True) -> dict[str, tuple[Reader, list[bytes]]]:
     for suffix, files in (_clouds() | _meshes() | _scans()).items():
         found[f"cloud{suffix}"] = (partial(_read_cloud, suffix), files)
     found["stdin"] = (_read_by_content, [file for _, files in found.values() for file in files])
-    found["gzip"] = (partial(_read_cloud, ".xyz.gz"), [gzip.compress(dump_cloud(POINTS, "a.xyz"))])
+    found["gzip"] = (partial(_read_cloud, ".xyz.gz"), [gzip.compress(dump_cloud(POINTS, "a.xyz"), mtime=0)])
     curve = make_shape(shape_graph("y"))[1]
     for suffix in EXPORTS:
         name = f"a.{suffix}"
@@ -136,6 +137,7 @@ def _scans() -> dict[str, list[bytes]]:
     for suffix in (".las", ".laz"):
         made = laspy.create(point_format=3, file_version="1.4")
         made.header.scales = [0.001] * 3
+        made.header.creation_date = date(2026, 1, 1)  # a case is the same on every day
         made.x, made.y, made.z = POINTS.T
         made.classification = np.arange(30) % 5
         out = io.BytesIO()
