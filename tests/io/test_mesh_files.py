@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tiskel import TiskelError
+from tiskel.io.clouds import parse_cloud
 from tiskel.io.mesh_file import mesh_bytes
 from tiskel.slicing.mesh import Mesh
 
@@ -26,3 +27,11 @@ def test_trimesh_reads_every_format(suffix: str) -> None:
 def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
     with pytest.raises(TiskelError, match=r"cannot be written as '\.xyz'; choose one of \.ply, \.obj, \.stl, \.glb"):
         mesh_bytes(MESH, tmp_path / "a.xyz")
+
+
+def test_a_mesh_without_a_finite_face_is_refused() -> None:
+    corners = b"v 0 0 0\nv 1 0 0\nv nan 1 0\nv 0 0 1\n"
+    with pytest.raises(TiskelError, match=r"a\.obj has no face whose corners are finite; export it again"):
+        parse_cloud(corners + b"f 1 2 3\nf 3 4 1\n", "a.obj")
+    (said,) = parse_cloud(corners + b"f 1 2 3\nf 1 2 4\n", "a.obj", mesh_samples=50).warnings
+    assert said == "a.obj: 1 of 2 faces have corners that are not finite and were left out"

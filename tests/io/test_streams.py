@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from tiskel import TiskelError
+from tiskel.io import streams
 from tiskel.io.streams import check_target, mapped, read_bytes, write_bytes
 
 
@@ -125,3 +126,9 @@ def test_names_that_no_file_can_have_are_told() -> None:
         read_bytes("a\0b")
     with pytest.raises(TiskelError, match=r"cannot read aaa.*: File name too long"):
         read_bytes("a" * 5000)
+
+
+def test_a_device_that_never_ends_is_left_sooner_than_a_pipe(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(streams, "DEVICE_BYTES", 3 << 20)
+    with pytest.raises(TiskelError, match="gives more than 3 MB and is no file on disk"):
+        read_bytes("/dev/zero")

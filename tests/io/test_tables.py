@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tiskel import TiskelError, load_cloud
+from tiskel.io.clouds import parse_cloud
 from tiskel.io.formats import text
 
 POINTS = np.array([[0.5, 1.5, 2.5], [3.5, -4.5, 5.5]])
@@ -173,3 +174,10 @@ def test_other_suffixes_of_text(suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"a{suffix}"
     path.write_text("0.5 1.5 2.5 0 0 1\n3.5 -4.5 5.5 0 0 1\n")
     np.testing.assert_array_equal(load_cloud(path).points, POINTS)
+
+
+def test_columns_that_were_asked_for_are_no_properties() -> None:
+    table = b'x,y,z,"",w\n' + b"".join(b"%d,%d,%d,8,9\n" % (i, i * i, 7 - i) for i in range(5))
+    cloud = parse_cloud(table, "a.csv", columns=("w", "Y", "x"))
+    np.testing.assert_array_equal(cloud.points[:2], [[9, 0, 0], [9, 1, 1]])
+    assert set(cloud.properties) == {"z"}

@@ -69,3 +69,11 @@ def test_directions_in_a_plane_have_two_sides() -> None:
     turn = np.arange(60) * np.pi / 30
     circle = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
     assert areas(circle, 0.0, thin=False) == pytest.approx(0.5, abs=0.002)  # a polygon of 60 corners
+
+
+def test_hulls_without_a_volume_count_both_sides_or_nothing() -> None:
+    square = np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
+    assert hulls.hull_area(square) == pytest.approx(2 * 2)
+    assert hulls.hull_area(square[:3] @ np.array([[0.6, 0, 0.8], [0, 1, 0], [-0.8, 0, 0.6]])) == pytest.approx(2 * 1)
+    for nothing in (square[:0], square[:1], square[:2], np.repeat(square[:1], 5, axis=0), np.repeat(square[:2], 3, 0)):
+        assert hulls.hull_area(nothing) == 0
