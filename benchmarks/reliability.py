@@ -21,6 +21,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from fuzz.originals import originals
+from mutation_page import rooms
 
 from reference.forked import outcomes
 
@@ -115,6 +116,24 @@ processes of their own and count. Kernels are compiled and not counted: tests co
 
 | room | statements | run | branches | run |
 |---|---|---|---|---|"""
+REPORTED = """## Files of reported trouble
+
+Each in a process of its own: a value (exit code 0) or one line (1).
+
+| folder | files | read | refused | faults | MB at most | s at most |
+|---|---|---|---|---|---|---|
+"""
+ENVIRONMENT = """## The environment
+
+Closed streams, full disks, folders that are gone, limits of memory, odd names, links, endless input, killed
+runs: `tests/cli/test_environment.py` and `tests/cli/test_surroundings.py`, one test each.
+"""
+MUTATED = """## Changed on purpose
+
+Mutants of mutmut, one change in one function each, in the order of their hash, so that a part of them is a fair sample
+(`benchmarks/mutation.py`); [the survivors](../benchmarks/mutation.md) are listed, with why they survive.
+
+"""
 KILLED = """## Killed at random moments
 
 SIGKILL, SIGTERM and SIGINT at moments that are uniform over the time of an undisturbed run of small clouds
@@ -133,20 +152,20 @@ def main() -> None:
     parser.add_argument("--state", type=Path, default=Path("out/fuzz"))
     parser.add_argument("--kills", type=Path, default=Path("out/kills.json"), help="what benchmarks/kills.py counted")
     parser.add_argument("--coverage", type=Path, default=Path("out/coverage.json"), help="what `make coverage` wrote")
+    parser.add_argument("--mutants", type=Path, default=Path("out/mutation"), help="what benchmarks/mutation.py found")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     rows = fuzzed(given.state, given.cases)
     cases, faults = (sum(int(row.split("|")[at]) for row in rows) for at in (2, 3))
-    page = HEAD + "\n".join([*rows, f"| all | {cases} | {faults} |"])
-    page += (
-        "\n\n## Files of reported trouble\n\nEach in a process of its own: a value (exit code 0) or one line (1).\n\n"
-    )
-    page += "| folder | files | read | refused | faults | MB at most | s at most |\n|---|---|---|---|---|---|---|\n"
-    page += "\n".join(reported()) + f"\n\n{killed(given.kills)}\n\n{covered(given.coverage)}\n\n## The environment\n\n"
-    page += (
-        "Closed streams, full disks, folders that are gone, limits of memory, odd names, links, endless input, killed\n"
-    )
-    page += "runs: `tests/cli/test_environment.py` and `tests/cli/test_surroundings.py`, one test each.\n"
+    parts = [
+        HEAD + "\n".join([*rows, f"| all | {cases} | {faults} |"]),
+        REPORTED + "\n".join(reported()),
+        killed(given.kills),
+        covered(given.coverage),
+        MUTATED + rooms(given.mutants),
+        ENVIRONMENT,
+    ]
+    page = "\n\n".join(parts)
     if given.write:
         PAGE.write_text(page)
     else:

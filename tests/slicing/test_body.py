@@ -235,14 +235,19 @@ def test_the_stage_file_gives_the_same_surface_back(y: Surfaces) -> None:
 def test_damaged_surfaces_of_bodies_are_refused(y: Surfaces) -> None:
     document = json.loads(dump_surfaces(y))
     body = document["body"]
-    for wrong in (
-        {**body, "distances": [0.0]},
-        {**body, "patches": {**body["patches"], "supports": [0.0] * len(whole(y).patches)}},
-        {**body, "patches": {**body["patches"], "values": [1.0]}},
-        {key: value for key, value in body.items() if key != "radius"},
+    parts, count = body["patches"], len(whole(y).patches)
+    for wrong, said in (
+        ({**body, "distances": [0.0]}, f"1 distances of {len(y.cloud)} points"),
+        ({**body, "patches": {**parts, "supports": [0.0] * count}}, "the support of a patch must be positive"),
+        ({**body, "patches": {**parts, "values": [1.0]}}, "columns of patches have different lengths, or none"),
+        ({**body, "patches": {key: [] for key in parts}}, "columns of patches have different lengths, or none"),
+        ({**body, "patches": {**parts, "radii": [None] * count}}, "radii of patches must be finite numbers, one row"),
+        ({**body, "patches": {**parts, "radii": [[1.0]] * count}}, "radii of patches must be finite numbers, one row"),
+        ({key: value for key, value in body.items() if key != "radius"}, "there is no 'radius'"),
     ):
-        with pytest.raises(TiskelError, match="damaged surface file"):
+        with pytest.raises(TiskelError) as error:
             parse_surfaces(json.dumps({**document, "body": wrong}).encode(), "s.json")
+        assert str(error.value).startswith(f"s.json is a damaged surface file: {said}")
 
 
 def test_a_cloud_of_more_points_is_thinned_and_all_distances_are_told() -> None:
