@@ -211,13 +211,13 @@ def test_bad_runs_end_with_one_line(tiskel: Runner, skeleton: Path, tmp_path: Pa
     for option, value, count in (("--start", "0,4", 5), ("--omega", "a,b,c", 3)):
         said = wrong_usage(tiskel("roll", "f.json", option, value))
         assert f"{option}: it needs {count} numbers separated by commas, got '{value}'" in said
+    assert "--m: it needs 3 numbers" in wrong_usage(tiskel("slice", "s.ply", "--m", "1,2"))
     still = tiskel("roll", "f.json", "--omega", "0,0,0", "--json", "--duration", 1)
     assert still.returncode == 0
     assert "stays where it is" in json.loads(still.stdout)["runs"][0]["warnings"][0]
     refused: list[tuple[tuple[object, ...], str]] = [
         (("s.ply", "--interval", 0.9, "--no-body"), "too short for 4 slices"),
         (("s.ply", "--branch", 7), "there is no branch 7"),
-        (("s.ply", "--m", "1,2"), "--m needs 3 numbers"),
         (("f.json",), "is no"),
     ]
     for options, said in refused:
