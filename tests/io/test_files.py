@@ -1,7 +1,9 @@
 """Files: what is written comes back, the bytes are always the same, and broken files are refused with a reason."""
 
+import errno
 import io
 import json
+import os
 import tracemalloc
 from dataclasses import replace
 from pathlib import Path
@@ -323,11 +325,32 @@ def test_a_file_of_the_wrong_stage_says_which_is_needed(contraction: Contraction
         read_contraction(tmp_path / "p.ply")
 
 
-def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path: Path, contraction: Contraction) -> None:
-    target = tmp_path / "here" / "c.ply"
-    with pytest.raises(TiskelError, match="cannot write"):
+@pytest.mark.parametrize("step", ["write", "flush", "chmod", "replace"])
+def test_a_failed_write_leaves_the_old_file_and_no_other(
+    step: str, tmp_path: Path, contraction: Contraction, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At whichever step the disk gives up."""
+
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    class Refusing(io.FileIO):
+        pass
+
+    target = tmp_path / "c.ply"
+    target.write_bytes(b"old")
+    if step in ("chmod", "replace"):
+        monkeypatch.setattr(Path, step, refuse)
+    else:
+        setattr(Refusing, step, refuse)
+        monkeypatch.setattr(os, "fdopen", Refusing)
+    with pytest.raises(TiskelError, match=r"cannot write .*No space left on device"):
         write_contraction(target, contraction)
-    assert not list(tmp_path.iterdir())
+    monkeypatch.undo()
+    assert [path.name for path in tmp_path.iterdir()] == ["c.ply"]
+    assert target.read_bytes() == b"old"
+    write_contraction(target, contraction)
+    assert target.read_bytes() == dump_contraction(contraction)
     with pytest.raises(TiskelError, match="is a directory"):
         write_contraction(tmp_path, contraction)
 

@@ -3,6 +3,7 @@
 import gzip
 import importlib.util
 import io
+import random
 import re
 import tempfile
 from pathlib import Path
@@ -107,6 +108,17 @@ def test_the_reader_of_e57_leaves_no_file_behind(proc: bool, tmp_path: Path, mon
 def test_a_compiled_reader_that_dies_is_one_line() -> None:
     with pytest.raises(TiskelError, match=r"a\.laz is not a valid LAZ file: its reader died \(-6\)"):
         read_apart(dies, b"", "a.laz", "LAZ")
+
+
+def test_laz_whose_chunks_are_larger_than_the_file_is_refused() -> None:
+    data = bytearray(las_bytes(packed=True))
+    start = int.from_bytes(data[96:100], "little")
+    table = int.from_bytes(data[start : start + 8], "little")
+    data[table + 8 :] = random.Random(0).randbytes(40)  # packed: a chunk of more bytes than anyone has
+    with pytest.raises(
+        TiskelError, match=r"its table promises chunks of \d{8,} bytes, the file has \d+; export it again"
+    ):
+        parse_cloud(bytes(data), "a.laz")
 
 
 @pytest.mark.parametrize("at_the_end", [False, True])

@@ -55,12 +55,29 @@ def arrays_of(data: bytes) -> dict[str, npt.NDArray[Any]]:
     """Return the points, and the other columns by name; raises what laspy and lazrs raise."""
     import laspy
 
+    if data[104] & PACKED:
+        _check_chunks(data)
     found = laspy.read(io.BytesIO(data))
     points = np.stack([np.asarray(found[axis], np.float64) for axis in "xyz"], axis=1)
     there = set(found.point_format.dimension_names)
     names = [key for key in (*KEPT, *found.point_format.extra_dimension_names) if key in there and key != "points"]
     columns = {key: np.array(found[key]) for key in dict.fromkeys(names)}
     return {"points": points} | {key: value for key, value in columns.items() if value.shape == (len(points),)}
+
+
+def _check_chunks(data: bytes) -> None:
+    """Raise ValueError where chunks of LAZ, for whose bytes the reader makes room at once, are larger than the file."""
+    import lazrs
+
+    record = data.find(LASZIP) - 2
+    if record < 0:
+        return
+    source = io.BytesIO(data)
+    source.seek(_number(data, 96, 4))
+    said = lazrs.LazVlr(data[record + VLR : record + VLR + _number(data, record + 20, 2)])
+    size = sum(size for _, size in lazrs.read_chunk_table(source, said))
+    if size > len(data):
+        raise ValueError(f"its table promises chunks of {size} bytes, the file has {len(data)}")
 
 
 def _check(data: bytes, name: str) -> None:
