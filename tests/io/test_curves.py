@@ -303,6 +303,14 @@ def test_the_table_of_branches_of_a_loop_and_of_a_bridge() -> None:
     assert (way.kind, way.bridged, loop.bridged) == ("end-end", 0.75, 0.0)
 
 
+def test_every_piece_of_vtp_counts_its_points_from_the_first_of_its_own() -> None:
+    head, piece, tail = text_vtp("3").partition(b"<Piece>")[0], text_vtp("3"), b"</PolyData></VTKFile>"
+    one = piece[len(head) : -len(tail)]
+    curve = parse_curve(head + 3 * one + tail, "a.vtp")
+    assert len(curve.nodes) == 9
+    assert curve.edges.tolist() == [[0, 1], [1, 2], [3, 4], [4, 5], [6, 7], [7, 8]]
+
+
 def test_a_node_alone_is_no_polyline(tmp_path: Path) -> None:
     nodes = np.array([[0.0, 0, 0], [1, 0, 0], [5, 5, 5]])
     data = EXPORTS["dxf"](as_skeleton(Curve(nodes, np.array([[0, 1]], np.int32))))

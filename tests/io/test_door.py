@@ -51,6 +51,7 @@ def edited(data: bytes, element: str, edit: Callable[[dict[str, Any]], dict[str,
 
 CHANGES = [
     ("robust", "vertex", "x", 5, np.nan, "row 5: x, y, z is"),
+    ("robust", "vertex", "x0", 5, np.nan, "element 'vertex', row 5: x0, y0, z0 is"),
     ("robust", "vertex", "row", 5, 300, "row 5: row is 300, it must be from 0 to 299"),
     ("robust", "vertex", "row", 5, 6, "row is 6 once more"),
     ("robust", "vertex", "section", 7, 10**6, "row 7: section is 1000000"),

@@ -149,6 +149,10 @@ SCAN = (
 )
 
 
+def test_ptx_is_told_by_its_first_lines() -> None:
+    np.testing.assert_array_equal(parse_cloud(SCAN.encode(), "-").points, parse_cloud(SCAN.encode(), "a.ptx").points)
+
+
 def test_ptx_of_two_scans_is_turned_and_shifted_and_lost_pulses_have_no_place() -> None:
     """A row times the matrix: x goes to y, y to -x."""
     cloud = parse_cloud((SCAN + SCAN).encode(), "a.ptx")

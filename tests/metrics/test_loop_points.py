@@ -46,6 +46,8 @@ def test_a_large_cloud_is_thinned_at_random_as_before() -> None:
 def test_points_on_wires_are_told_from_those_of_tubes() -> None:
     assert on_wires(trefoil(1500)).mean() > 0.9
     assert on_wires(make_shape(shape_graph("helix"), ShapeParams(count=1000))[0]).mean() == 0
+    sheet = np.random.default_rng(0).random((1000, 3)) * [1, 1, 0]
+    assert on_wires(sheet).mean() < 0.01
 
 
 def test_the_loop_of_a_closed_wire_is_there() -> None:

@@ -387,6 +387,18 @@ def test_controllability_of_the_local_model_as_derived() -> None:
     assert found == pytest.approx(derived, rel=1e-9)
 
 
+@pytest.mark.parametrize("radius", [0.2, 0.7])
+def test_controllability_has_the_determinant_of_the_relative_curvature(radius: float) -> None:
+    """det(K_o + I/R_s) is the product of the principal relative curvatures, however the frame stands to them."""
+    for u, v in ((0.3, 0.6), (1.2, 1.3), (4.0, 2.2)):
+        forms = forms_of(BENT.jet(u, v))
+        assert abs(curvature(forms)[1]) > 1e-3
+        low, high = principal_curvatures(forms)
+        determinant = (low + 1 / radius) * (high + 1 / radius)
+        expected = -1 / (determinant**2 * forms.M[0][0] * forms.M[1][1] * radius**2 * cos(0.4))
+        assert controllability(forms, radius, 0.4) == pytest.approx(expected, rel=1e-12)
+
+
 def test_period_of_a_full_turn_about_an_ellipse_needs_its_perimeter() -> None:
     """Perimeter of the ellipse 2 x 1: 9.688448221, by the trapezoidal rule, which is exact here to rounding."""
     u = np.linspace(0, 2 * pi, 4096, endpoint=False)
