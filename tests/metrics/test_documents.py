@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from reference.quality import SECTIONS
 from tiskel import (
     CurveGraph,
     GlsParams,
@@ -21,17 +22,6 @@ from tiskel import (
 from tiskel.metrics.result import NO_CURVE, NO_POINTS
 from tiskel.metrics.stability import verdict
 
-SECTIONS = {
-    "topology": {"bottleneck", "wasserstein", "bars", "threshold", "similar", "reasons"},
-    "boundedness": {"points", "curve", "reasons"},
-    "inside": {"points", "curve", "reasons"},
-    "medialness": {"curve", "reasons"},
-    "air": {"curve", "places", "reasons"},
-    "centredness": {"points", "curve", "points_raw", "reasons"},
-    "smoothness": {"points", "curve", "reasons"},
-    "loops": {"surface", "solid", "graph", "reasons"},
-    "graph": {"components", "loops", "ends", "joints", "length"},
-}
 WAYS = ("coverage", "outside", "hull", "map")
 SETTLED = ("measured", "at_a_cloud_point", *(f"settled_by_{way}" for way in WAYS))
 OF_POINTS = {"points_without_tangent", *(f"points_{name}" for name in SETTLED)}

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from reference.fixtures import Load
+from reference.quality import SECTIONS
 from tiskel import MetricParams, Quality, ShapeParams, TiskelError, evaluate, make_shape, shape_graph
 from tiskel.arrays import Points
 from tiskel.metrics.tables import COLUMNS, best_rows, row_of, to_csv
@@ -61,25 +62,12 @@ def shape(count: int = 600) -> tuple[Points, Points, Points, np.ndarray]:
     return cloud, cloud * [0.01, 0.01, 0.75], true.nodes, true.edges
 
 
-KEYS = {
-    "topology": {"bottleneck", "wasserstein", "bars", "threshold", "similar", "reasons"},
-    "boundedness": {"points", "curve", "reasons"},
-    "inside": {"points", "curve", "reasons"},
-    "medialness": {"curve", "reasons"},
-    "air": {"curve", "places", "reasons"},
-    "centredness": {"points", "curve", "points_raw", "reasons"},
-    "smoothness": {"points", "curve", "reasons"},
-    "loops": {"surface", "solid", "graph", "reasons"},
-    "graph": {"components", "loops", "ends", "joints", "length"},
-}
-
-
 def test_keys_are_the_same_whatever_is_given() -> None:
     cloud, points, nodes, edges = shape()
     for given in ((points, nodes, edges), (points, None, None), (None, nodes, edges), (None, None, None)):
         document = strict(evaluate(cloud, *given))
-        assert {part: set(document[part]) for part in KEYS} == KEYS
-        for part in KEYS:
+        assert {part: set(document[part]) for part in SECTIONS} == SECTIONS
+        for part in SECTIONS:
             for key, value in document[part].items():
                 if value is None and part != "graph" and key in ("points", "curve", "bottleneck", "solid", "graph"):
                     assert document[part]["reasons"][key]

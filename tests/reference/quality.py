@@ -5,6 +5,18 @@ from scipy.spatial import ConvexHull
 
 from tiskel.arrays import Numbers, Points
 
+SECTIONS = {  #: keys of the parts of a document of measures, whatever was given
+    "topology": {"bottleneck", "wasserstein", "bars", "threshold", "similar", "reasons"},
+    "boundedness": {"points", "curve", "reasons"},
+    "inside": {"points", "curve", "reasons"},
+    "medialness": {"curve", "reasons"},
+    "air": {"curve", "places", "reasons"},
+    "centredness": {"points", "curve", "points_raw", "reasons"},
+    "smoothness": {"points", "curve", "reasons"},
+    "loops": {"surface", "solid", "graph", "reasons"},
+    "graph": {"components", "loops", "ends", "joints", "length"},
+}
+
 
 def winding_number(query: Numbers, points: Points, dipoles: Points, softening: np.ndarray) -> float:
     """Return the sum of solid angles of softened patches, over 4 pi."""

@@ -69,7 +69,7 @@ def _check_chunks(data: bytes) -> None:
     """Raise ValueError where chunks of LAZ, for whose bytes the reader makes room at once, are larger than the file."""
     import lazrs
 
-    record = data.find(LASZIP) - 2
+    record = _laszip(data)
     if record < 0:
         return
     source = io.BytesIO(data)
@@ -95,7 +95,7 @@ def _check(data: bytes, name: str) -> None:
         raise TiskelError(f"{name} holds no points; check how it was made")
     if data[104] & PACKED:
         check_unpacked(count * size, len(data), name)
-        check_unpacked(_chunk(data, start) * size, len(data), name, "has chunks of")
+        check_unpacked(_chunk(data) * size, len(data), name, "has chunks of")
         if (chunks := _chunks(data, start)) > count:
             raise TiskelError(f"{name}: its table promises {chunks} chunks for {count} points; export it again")
     elif start + count * size > len(data):
@@ -104,10 +104,15 @@ def _check(data: bytes, name: str) -> None:
         )
 
 
-def _chunk(data: bytes, start: int) -> int:
+def _laszip(data: bytes) -> int:
+    """Return where the record in front of the points begins that says how LAZ is packed, below 0 without one."""
+    return data.find(LASZIP, 0, _number(data, 96, 4)) - 2
+
+
+def _chunk(data: bytes) -> int:
     """Return how many points the chunks of LAZ hold, for each of which its reader makes room; 0 where that varies."""
-    found = data.find(LASZIP, 0, start)
-    points = _number(data, found - 2 + VLR + CHUNK, 4) if found >= 0 else 0
+    record = _laszip(data)
+    points = _number(data, record + VLR + CHUNK, 4) if record >= 0 else 0
     return 0 if points == ANY_CHUNK else points
 
 
