@@ -243,3 +243,8 @@ def normalisation(points: Points, kind: Normalisation = "side") -> Frame:
 def diagonal(points: Points) -> float:
     """Return the length of the bounding box's diagonal of points (n, 3), in their unit."""
     return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def within_runs(counts: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.int64]:
+    """Return 0, 1, 2, ... within each run of so many, all runs one behind the other: 0, 1, 0, 1, 2 of 2 and 3."""
+    return np.asarray(np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points, within_runs
 from tiskel.geometry.frames import unit
 from tiskel.geometry.graph import CurveGraph
 
@@ -57,7 +57,7 @@ def curve_samples(curve: CurveGraph, count: int) -> CurveSamples:
     shares = np.floor(count * lengths / total + 0.5) if total > 0 else np.zeros(len(edges))
     each = np.maximum(1, shares).astype(int)
     edge = np.repeat(np.arange(len(edges)), each)
-    step = np.arange(len(edge)) - np.repeat(np.cumsum(each) - each, each) + 1
+    step = within_runs(each) + 1
     share = step / each[edge]
     first, last = edges[edge, 0], edges[edge, 1]
     at_vertex = step == each[edge]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Indices, Numbers, Points
+from tiskel.arrays import TINY, Indices, Numbers, Points, within_runs
 from tiskel.geometry.graph import CurveGraph
 
 MOST = 300_000  # parts of one curve: bounds the memory; longer ones make a very long curve coarser
@@ -62,7 +62,7 @@ def parts_of(curve: CurveGraph, longest: float) -> Parts:
     longest = max(longest, float(lengths.sum()) / MOST, TINY)
     counts = np.ceil(lengths / longest).astype(int)
     edge = np.repeat(np.arange(len(lengths), dtype=np.int32), counts)
-    number = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
+    number = within_runs(counts)
     share = (number + 0.5) / counts[edge]
     return Parts(edge, share, lengths[edge] / counts[edge], _at(curve.nodes, curve, edge, share))
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
+from tiskel.arrays import within_runs
 from tiskel.io.streams import Bytes
 
 HEADER_END = b"end_header"  #: the last line of a header
@@ -47,7 +48,7 @@ def lists_at(places: npt.NDArray[Any], kind: str, data: Bytes) -> npt.NDArray[An
     size = np.dtype(kind).itemsize
     values: npt.NDArray[Any] = np.ndarray(max(len(data) - size + 1, 0), kind, data, strides=(1,))  # from every byte on
     lengths = places["length"]
-    step = np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)
+    step = within_runs(lengths)
     return np.asarray(values[np.repeat(places["start"], lengths) + size * step])
 
 
@@ -69,7 +70,7 @@ def _places(element: PlyElement, order: str, data: Bytes, start: int) -> tuple[n
     for prop in element.properties:
         if isinstance(prop, PlyListProperty):
             length, values = (np.dtype(one) for one in prop.list_dtype(order))
-            steps.append((length.itemsize, struct.Struct(f"{'><'[order == '<']}{length.char}"), values.itemsize))
+            steps.append((length.itemsize, struct.Struct(f"{order}{length.char}"), values.itemsize))
             row.append((prop.name, PLACE))
         else:
             row.append((prop.name, np.uint8, (0,)))  # nothing of it is kept

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Edges, Indices, Mask, Numbers, Points
+from tiskel.arrays import Edges, Indices, Mask, Numbers, Points, within_runs
 from tiskel.geometry.graph import CurveGraph, edge_lengths
 
 Kinds = npt.NDArray[np.uint8]
@@ -108,7 +108,7 @@ def divided(web: Web, step: float, near: Mask) -> Web:
     if len(long) == 0:
         return web
     edge = np.repeat(long, parts[long] - 1)
-    number = np.arange(len(edge)) - np.repeat(np.cumsum(parts[long] - 1) - (parts[long] - 1), parts[long] - 1) + 1
+    number = within_runs(parts[long] - 1) + 1
     share = number / parts[edge]
     a, b = web.edges[edge].T
     fresh: dict[str, Any] = {

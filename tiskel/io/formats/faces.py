@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Edges
+from tiskel.arrays import Edges, within_runs
 from tiskel.errors import TiskelError
 from tiskel.io.formats.base import NO_FACES
 
@@ -79,7 +79,7 @@ def fans(polygons: Sequence[Sequence[int]] | npt.NDArray[Any] | Lists, count: in
         raise TiskelError(f"{name}: a face names vertex {wrong}, there are {count}; export it again")
     triangles = np.maximum(lengths - 2, 0)
     first = np.repeat(np.cumsum(lengths) - lengths, triangles)
-    step = np.arange(triangles.sum()) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    step = within_runs(triangles)
     return np.stack([corners[first], corners[first + step + 1], corners[first + step + 2]], axis=1).astype(np.int32)
 
 
