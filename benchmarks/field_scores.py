@@ -19,6 +19,7 @@ from tiskel.metrics.truth import agreement
 
 PLACES = 1000  # on each curve, by length
 HALF = 0.5  # of the local radius: how far a one-sided curve may be from the middle of what was seen
+CLOSE, MOST_PLACES = 0.1, 100_000  # radii from place to place on the truth, and how many places at most
 CLIMBS = 200  # places of these from which the best clearance is climbed to
 SLACK = 0.5  # spacings beside a wire that count as inside
 SEEN = 3  # points about a place of the truth from which on their mean is the middle of what was seen
@@ -146,11 +147,13 @@ def reach(curve: CurveGraph, truth: CurveGraph, cloud: np.ndarray) -> Row:
     The middle of what was seen at a place of the truth is the mean of the points that are nearest to it.
     """
     fine = divided(truth, 4)
+    along = curve_samples(truth, int(np.clip(truth.length / (CLOSE * truth.radii.min()), PLACES, MOST_PLACES)))
     owner = cKDTree(fine.nodes).query(cloud)[1]
     count = np.bincount(owner, minlength=len(fine.nodes))
     means = np.stack([np.bincount(owner, x, len(fine.nodes)) for x in cloud.T], axis=1) / np.maximum(count, 1)[:, None]
     seen = count >= SEEN
-    places, radii = np.concatenate([means[seen], fine.nodes]), np.concatenate([fine.radii[seen], fine.radii])
+    places = np.concatenate([means[seen], along.points])
+    radii = np.concatenate([fine.radii[seen], truth.radii[truth.edges[along.edges]].mean(axis=1)])
     samples = curve_samples(curve, PLACES)
     apart, nearest = cKDTree(places).query(samples.points)
     near = apart <= HALF * radii[nearest]

@@ -2,15 +2,12 @@
 
 import numpy as np
 import pytest
-from scipy import sparse
-from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
 from tiskel import ShapeParams, make_shape, shape_graph
 from tiskel.arrays import Points, first_of_duplicates
 from tiskel.geometry import strays
 from tiskel.geometry.cells import cell_numbers, numbered
-from tiskel.methods.robust.wire.loops import _ways
 from tiskel.methods.robust.wire.routes import _crowds
 
 GENERATOR = np.random.default_rng(4)
@@ -52,15 +49,6 @@ def test_the_largest_crowds_are_counted_and_no_other_is_larger() -> None:
         assert ((crowd == most) & (part == number)).sum() == ((full == most) & (part == number)).sum() > 0
     assert ((crowd == full) | (crowd == 0)).all()
     assert (crowd == 0).any()  # or all were asked
-
-
-def test_ways_are_those_of_all_nodes_up_to_the_longest_that_matters() -> None:
-    edges = np.array([[0, 1], [1, 2], [2, 3], [3, 4], [5, 6]])
-    graph = sparse.coo_array((np.arange(1.0, 6), (edges[:, 0], edges[:, 1])), shape=(7, 7)).tocsr()
-    pairs = np.array([[0, 2], [0, 4], [1, 3], [5, 0], [5, 6]], np.int32)
-    every = dijkstra(graph, directed=False)[pairs[:, 0], pairs[:, 1]]
-    np.testing.assert_array_equal(_ways(graph, pairs, 100), every)
-    np.testing.assert_array_equal(_ways(graph, pairs, 6), np.where(np.isinf(every), np.inf, np.minimum(every, 6)))
 
 
 def with_strays(count: int) -> Points:

@@ -40,6 +40,7 @@ from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.network import Network, prepared
 from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, surely_wires, wires
+from tiskel.methods.robust.rungs import without_rungs
 from tiskel.methods.robust.sheets import flat_share, on_sheets
 from tiskel.methods.robust.thinning import remembered, thinned, told
 from tiskel.methods.robust.treelike import without_contacts
@@ -84,7 +85,7 @@ def curve(trace: Trace, params: RobustParams, span: Span = SILENT) -> MethodCurv
     if trace.sections is None:
         raise TiskelError("the contraction has no sections; run tiskel contract again with --method robust")
     network = trace.prepared or prepared(remembered(trace), params.neighbours_for(len(trace.rows)), trace.surface)
-    found = without_contacts(_best(network, trace, params, span.within(0, 0.9)), params)
+    found = without_rungs(without_contacts(_best(network, trace, params, span.within(0, 0.9)), params), params)
     best = on_sheets(found, params.seen_from)
     span.at(0.9, "doubts")
     return _translated(best, trace, network)

@@ -6,7 +6,8 @@ code            severity what
 ``in-air``      warning  curve neither at the points nor between them, bridges aside
 ``outside``     warning  curve outside the body, as ``tiskel metrics`` counts it
 ``loops``       warning  the body has more or fewer handles than the curve has loops
-``open-ends``   warning  ends without a cap that look at another part of the curve: a gap left open
+``open-ends``   warning  ends without a cap that look at another part of the curve: a gap left open; a note if few do
+``contacts``    note     ends that lie at another part of the curve; a warning where they are many
 ``far``         warning  points far from the curve: a part without a branch
 ``flat``        warning  cones in a body whose normals hardly turn; a note where it is long, or told to be a sheet
 ``short``       warning  the body is hardly longer than thick
@@ -35,6 +36,7 @@ from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 from tiskel.geometry.representatives import few_places
 from tiskel.methods.robust import levels
+from tiskel.methods.robust.contacts import touching_ends
 from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.openings import open_ends_in_sight
 from tiskel.methods.robust.turning import flat_points, one_sided_nodes
@@ -73,6 +75,13 @@ def _severity(serious: bool) -> Severity:
 def _in_air(j: Judged) -> CurveWarning | None:
     measured = ~j.graph.bridged[j.samples.edges]
     air = in_the_air(j.graph, j.samples, j.points, j.spacings)
+    counted = measured if j.bridged_share > levels.BRIDGED_SHARE else np.ones_like(measured)  # nobody is told twice
+    if (much := air.share_of(counted)) > levels.AIR_MUCH:
+        text, places = (
+            "{share} of the curve is in the air: neither at the points nor between them",
+            air.places & counted,
+        )
+        return _doubt("in-air", text, much, j.samples.points[places], air.distance[places])
     share = air.share_of(measured)
     if share <= levels.AIR_SHARE:
         return None
@@ -133,7 +142,16 @@ def _open_ends(j: Judged) -> CurveWarning | None:
     if j.solid.closed or len(ends) == 0:
         return None
     text = f"{len(ends)} ends stop at a hole in the scan and face another part of the curve: they may belong together"
-    return _doubt("open-ends", text, len(ends) / j.graph.ends, j.graph.nodes[ends])
+    share = len(ends) / j.graph.ends
+    return _doubt("open-ends", text, share, j.graph.nodes[ends], None, _severity(share > levels.OPEN_SHARE))
+
+
+def _contacts(j: Judged) -> CurveWarning | None:
+    ends = touching_ends(j.graph, j.spacing)
+    if not len(ends) or (share := len(ends) / j.graph.ends) <= levels.CONTACTS:
+        return None
+    text = f"{len(ends)} of {j.graph.ends} ends lie at another part of the curve: which limbs go on there is a guess"
+    return _doubt("contacts", text, share, j.graph.nodes[ends], None, _severity(share > levels.CONTACTS_SERIOUS))
 
 
 def _far(j: Judged) -> CurveWarning | None:
@@ -185,7 +203,7 @@ def _bridged(j: Judged) -> CurveWarning | None:
     graph = j.graph
     if not graph.bridged.any():
         return None
-    share = float(graph.lengths[graph.bridged].sum()) / max(graph.length, TINY)
+    share = j.bridged_share
     over = graph.edges[graph.bridged]
     gaps = len(np.unique(component_labels(len(graph.nodes), over)[over[:, 0]]))
     text = f"{gaps} gaps in the scan were bridged by straight lines, {{share}} of the curve"
@@ -221,5 +239,5 @@ def _thin(j: Judged) -> CurveWarning | None:
 
 
 CHECKS: tuple[Callable[[Judged], CurveWarning | None], ...] = (
-    _in_air, _outside, _loops, _open_ends, _far, _flat, _short, _bridged, _small, _one_sided, _thin,
+    _in_air, _outside, _loops, _open_ends, _contacts, _far, _flat, _short, _bridged, _small, _one_sided, _thin,
 )  # fmt: skip

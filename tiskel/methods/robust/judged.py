@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Numbers, Points, Table
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points, Table
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.solid import Solid
@@ -52,6 +52,11 @@ class Judged:
     def spacing(self) -> float:
         """The median spacing."""
         return float(np.median(self.spacings))
+
+    @cached_property
+    def bridged_share(self) -> float:
+        """The share of the curve's length that leads over gaps."""
+        return float(self.graph.lengths[self.graph.bridged].sum()) / max(self.graph.length, TINY)
 
     @cached_property
     def samples(self) -> CurveSamples:

@@ -11,6 +11,10 @@ SURFACE_POINTS = 16_384  # of larger clouds so many are taken to ask for inside 
 AIR_SHARE = 0.01  # of the length in the air, bridges aside
 HOLE = 1.5  # radii; half the length of a hole in the scan: points before and behind it count as about the curve
 AIR_SERIOUS = 0.02  # of the length that is in the air even so: from there on it is a warning
+AIR_MUCH = (
+    0.06  # of the length in the air, over holes and bridges too: from there on it is a warning [true curves to 0.052
+)
+# where a fifth of the surface is missing]
 CLEARLY_OUTSIDE = 0.25  # winding number; holes in the scan take some away from places inside
 THICK = 2.0  # spacings in a radius; where nothing is thicker there is no inside to speak of
 OUTSIDE_SHARE = 0.05  # of the places outside the body
@@ -29,3 +33,9 @@ BRIDGED_SHARE = 0.2  # of the length over gaps: from there on it is more guess t
 LEFT_OUT_SHARE = 0.05  # of the points: from there on they are no dust
 ONE_SIDED_SHARE = 0.2  # of the nodes with points on one side only
 THIN_SHARE = 0.05  # of the nodes whose radius is a bound
+OPEN_SHARE = 0.1  # of the ends that face another part over a gap: below it a crown lacks a twig or two
+TOUCHING = 3.0  # spacings, besides its radius, between an end and another part of the curve that it lies at
+APART = 10.0  # spacings along the curve from an end, at least, to be another part
+APART_RADII = 4.0  # the same in the sum of the radii at both
+CONTACTS = 0.1  # of the ends that lie at another part: from there on it is told
+CONTACTS_SERIOUS = 0.45  # from there on limbs may be cut and joined wrongly [trees that are right 0 to 0.45]

@@ -13,6 +13,7 @@ from tiskel.geometry.forest import spanning_links
 from tiskel.methods.robust.branches import without_spurs
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.fit import feet_of_own
+from tiskel.methods.robust.wire import CLEAR
 from tiskel.params import RobustParams
 
 CROWN = 15  # ends from which on a body is tree-like [tubes with loops, sampled coarsely, have up to 9]
@@ -21,7 +22,10 @@ CROWN = 15  # ends from which on a body is tree-like [tubes with loops, sampled 
 def without_contacts(found: Candidate, params: RobustParams) -> Candidate:
     """Return a curve without loops, where it is to have none, or has more ends than these and its body no handles."""
     curve = found.curve
-    crown = params.topology == "auto" and curve.ends >= max(CROWN, curve.loops) and not found.solid.handles
+    clear = found.network.linear_share > CLEAR  # lines that meet are a lattice, whatever ends it has
+    crown = (
+        params.topology == "auto" and curve.ends >= max(CROWN, curve.loops) and not found.solid.handles and not clear
+    )
     if not curve.loops or not (params.topology == "tree" or crown):
         return found
     surface = np.maximum(curve.lengths * curve.radii[curve.edges].sum(axis=1), TINY)

@@ -11,15 +11,18 @@ TEASAR, Sato et al. 2000; Verroust and Lazarus 2000):
 5. Nodes are the means of their points; where these lie all about the limb, round cones are fitted, and the radius is
    measured, elsewhere it is a bound (:mod:`.curve`).
 6. Loops, where ends meet head on and the body is no tree (:mod:`.loops`).
+7. Where wires that are clear lines pass each other, apart, links from one to the other go, and 2 to 6 are done anew
+   (:mod:`.crossings`).
 """
 
 from tiskel.arrays import Indices
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.wire.crossings import crossings_of, parted
 from tiskel.methods.robust.wire.curve import curve_of
 from tiskel.methods.robust.wire.levels import RESOLVED, THREADS, levels_of
 from tiskel.methods.robust.wire.limbs import crowding, limbs_of
-from tiskel.methods.robust.wire.links import BRIDGE, links_of
+from tiskel.methods.robust.wire.links import BRIDGE, Links, links_of
 from tiskel.methods.robust.wire.loops import with_loops
 from tiskel.methods.robust.wire.routes import routes_of
 from tiskel.methods.robust.wire.spurs import without_spurs
@@ -29,6 +32,9 @@ from tiskel.params import RobustParams
 # Found by trial on generated trees, N r / L of their twigs from 0.1 to 5, clean and noisy.
 FEW = 3.8  # points to a spacing of length, below which limbs are threads [N r / L to 1: 1.3 to 3.7, above it 4.0 up]
 SELDOM = 0.28  # share of points on rings, below which what is a ring there is chance [noisy twigs to 0.26]
+CLEAR = 0.5  # share of neighbourhoods that are lines, from which on wires hardly touch by chance [most trees to 0.35
+# and all to 0.66, lattices from 0.9]
+ROUNDS = 4  # of looking for wires that pass each other [woven lattices need two]
 SMALLEST_PART = 10  # points; separate parts with fewer get no curve, unless there are no larger ones
 
 
@@ -40,8 +46,21 @@ def wire_curve(
     tubes (n,) name the sections of points on limbs that are known, -1 for
     others; noisy says that points of threads may look like rings.
     """
+    links = links_of(network.points, max(SMALLEST_PART, int(params.least_part * len(network.points))))
+    found = _curve(network, links, params, tubes, noisy)
+    for _ in range(ROUNDS if network.linear_share > CLEAR else 0):  # one that is parted may show another
+        if not (crossings := crossings_of(found[0], links.spacing)):
+            break
+        links = parted(links, network.points, crossings)
+        found = _curve(network, links, params, tubes, noisy)
+    return found
+
+
+def _curve(
+    network: Network, links: Links, params: RobustParams, tubes: Indices | None, noisy: bool
+) -> tuple[ConeCurve, Sections]:
+    """Return the curve that keeps to links, and its sections."""
     points = network.points
-    links = links_of(points, max(SMALLEST_PART, int(params.least_part * len(points))))
     root = None if params.root is None else network.placed(params.root)
     routes = routes_of(points, links, root)
     levels = levels_of(points, links, routes, BRIDGE, RESOLVED, tubes)
@@ -52,4 +71,4 @@ def wire_curve(
         limbs = limbs_of(levels, links.spacing)
     curve, sections = curve_of(points, links.spacing, levels, limbs, params)
     curve = without_spurs(curve, links.spacing, crowd if crowd >= FEW else 0.0)
-    return with_loops(curve, points, sections, links, params.topology), sections
+    return with_loops(curve, sections, links, params.topology, network.linear_share > CLEAR), sections
