@@ -1,20 +1,22 @@
 """Loops of tree-like bodies, and tubes that are kept among wires."""
 
 from dataclasses import replace
+from typing import NoReturn
 
 import numpy as np
 import pytest
 
-from tiskel import RobustParams, ShapeParams, contract, extract_skeleton, make_shape, shape_graph
+from tiskel import RobustParams, ShapeParams, TiskelError, contract, extract_skeleton, make_shape, shape_graph
 from tiskel.arrays import Points
 from tiskel.gallery.trees import thickened, tree
 from tiskel.geometry.solid import solid_of
+from tiskel.methods import robust
 from tiskel.methods.robust import treelike
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.network import prepared
 from tiskel.methods.robust.pipeline import fitted_curve
 from tiskel.methods.robust.regimes import on_sure_tubes
-from tiskel.methods.robust.treelike import without_contacts
+from tiskel.methods.robust.treelike import CROWN, without_contacts
 
 
 def tubes_of(points: Points) -> Candidate:
@@ -54,3 +56,19 @@ def test_points_of_tubes_lie_on_them_and_no_twig_of_a_crown_does() -> None:
     twigs = thickened(tree("leader", tips=100, seed=3), 4000, 0.3)
     crown = make_shape(twigs, ShapeParams(count=4000, noise=3.0))[0]
     assert (on_sure_tubes(tubes_of(crown)) == -1).all()
+
+
+def test_a_crown_gets_no_further_fronts(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def further(*_: object) -> NoReturn:
+        asked.append("another front")
+        raise TiskelError("a front too many")
+
+    monkeypatch.setattr(robust, "DOUBTFUL", -1.0)  # every curve is in doubt
+    monkeypatch.setattr(robust, "further_front", further)
+    crown = make_shape(shape_graph("tree"), ShapeParams())[0]
+    assert extract_skeleton(contract(crown)).ends > CROWN
+    assert not asked
+    with pytest.raises(TiskelError, match="too many"):
+        extract_skeleton(contract(make_shape(shape_graph("y"), ShapeParams(count=1000))[0]))

@@ -43,7 +43,7 @@ from tiskel.methods.robust.regimes import maybe_wires, regimes_of, shorter, sure
 from tiskel.methods.robust.rungs import without_rungs
 from tiskel.methods.robust.sheets import flat_share, on_sheets
 from tiskel.methods.robust.thinning import remembered, thinned, told
-from tiskel.methods.robust.treelike import without_contacts
+from tiskel.methods.robust.treelike import CROWN, without_contacts
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
 from tiskel.progress import SILENT, Span
@@ -112,7 +112,7 @@ def _best(network: Network, trace: Trace, params: RobustParams, span: Span) -> C
         if inner is not None and _alike(inner, best) and _clearly(inner, best) and not _in_mouths(inner, best):
             best = inner
     for number in range(1, params.extra_fronts + 1):
-        if best.misfit < number * DOUBTFUL:
+        if best.misfit < number * DOUBTFUL or best.curve.ends >= CROWN:  # no other front of a crown was ever better
             break
         span.at(0.6 + 0.4 * (number - 1) / params.extra_fronts, f"further front {number}")
         sections = further_front(network, contracted, params, number)
