@@ -147,6 +147,10 @@ def _open_ends(j: Judged) -> CurveWarning | None:
 
 
 def _contacts(j: Judged) -> CurveWarning | None:
+    graph, wires = j.graph, (j.graph.regimes == Regime.WIRE).mean() > levels.MOSTLY
+    if wires and graph.loops >= levels.NET and (each := graph.length / graph.loops / j.spacing) < levels.MESH:
+        text = f"{graph.loops} loops of wire, one for {each:.0f} spacings of it: wires side by side may run together"
+        return CurveWarning("contacts", text, share=1.0)
     ends = touching_ends(j.graph, j.spacing)
     if not len(ends) or (share := len(ends) / j.graph.ends) <= levels.CONTACTS:
         return None

@@ -39,3 +39,5 @@ APART = 10.0  # spacings along the curve from an end, at least, to be another pa
 APART_RADII = 4.0  # the same in the sum of the radii at both
 CONTACTS = 0.1  # of the ends that lie at another part: from there on it is told
 CONTACTS_SERIOUS = 0.45  # from there on limbs may be cut and joined wrongly [trees that are right 0 to 0.45]
+NET = 10  # loops of wires, from which on they may be chance: ways from one wire to the next beside it
+MESH = 80.0  # spacings of length for each such loop, below which they are taken for that [coils 46, stents from 172]
