@@ -15,7 +15,7 @@ from tiskel.methods.robust import treelike
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.network import prepared
 from tiskel.methods.robust.pipeline import fitted_curve
-from tiskel.methods.robust.regimes import on_sure_tubes
+from tiskel.methods.robust.regimes import on_sure_tubes, shorter, wires
 from tiskel.methods.robust.treelike import CROWN, without_contacts
 
 
@@ -72,3 +72,13 @@ def test_a_crown_gets_no_further_fronts(monkeypatch: pytest.MonkeyPatch) -> None
     assert not asked
     with pytest.raises(TiskelError, match="too many"):
         extract_skeleton(contract(make_shape(shape_graph("y"), ShapeParams(count=1000))[0]))
+
+
+def test_wires_whose_ends_meet_are_a_net_and_no_crown() -> None:
+    """Strands through a sheet or a thick strut meet each other; twigs of a crown seldom do."""
+    cloud = make_shape(thickened(tree("spreading", tips=25, seed=3), 1200, 0.3), ShapeParams(count=1200, noise=0.1))[0]
+    tubes = tubes_of(cloud)
+    thin = wires(tubes.network, tubes.solid, RobustParams(), tubes)
+    assert thin.meetings < 0.1 * thin.curve.ends
+    assert shorter(thin, tubes)
+    assert not shorter(replace(thin, meetings=thin.curve.ends - 1), tubes)

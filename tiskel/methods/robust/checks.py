@@ -45,6 +45,8 @@ class Candidate:
         The body inside the cloud.
     gaps : int
         How many gaps were bridged.
+    meetings : int
+        How many ends of wires meet another part of the curve and are left open.
     """
 
     fit: ConeFit
@@ -52,6 +54,7 @@ class Candidate:
     network: Network
     solid: Solid
     gaps: int
+    meetings: int = 0
 
     @property
     def curve(self) -> ConeCurve:

@@ -28,7 +28,7 @@ THIN = 2.2  # spacings: median radius up to which limbs are wires [generated tre
 CUT = 3.0  # most that a point counts as unexplained
 NO_WORSE = 1.5  # of what tubes leave unexplained, what wires may leave of a crown [trees to 1.36, sheets from 2.9]
 THICKET = 40  # ends of a crown in which loops that no handle confirms are contacts of limbs
-NET = 10  # loops, besides two for every end, from which on wires are a net [ladders and chairs to 5, sheets from 54]
+NET = 10  # meetings, besides two for every other end, from which on wires are a net [ladders to 5, sheets from 54]
 SHEETS = 0.2  # share of nodes on sheets, from which on a body is one [crowns of twigs none, plates of two faces 1]
 SLENDER = 3.0  # spacings: median radius of such limbs, at most
 BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
@@ -59,9 +59,9 @@ def maybe_wires(found: Candidate) -> bool:
 def wires(network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None) -> Candidate:
     """Return the curve of the wire regime, and what judges it; thick limbs are those of tubes that are known."""
     known = None if tubes is None else on_sure_tubes(tubes)
-    curve, sections = wire_curve(network, params, known, noisy=network.linear_share < NOISY)
+    curve, sections, meetings = wire_curve(network, params, known, noisy=network.linear_share < NOISY)
     fit = feet_of_own(curve, network.points, sections.section)
-    return Candidate(fit, sections, network, solid, int(curve.bridged.sum()))
+    return Candidate(fit, sections, network, solid, int(curve.bridged.sum()), meetings)
 
 
 def on_sure_tubes(tubes: Candidate) -> Indices:
@@ -92,7 +92,7 @@ def _on_tubes(tubes: Candidate, sharp: float, covered: float) -> Indices:
 
 def shorter(thin: Candidate, thick: Candidate) -> bool:
     """Tell whether wires describe a cloud better than tubes do; strands through a sheet do so, too, and are a net."""
-    if thin.curve.loops > NET + 2 * thin.curve.ends:
+    if thin.curve.loops + thin.meetings > NET + 2 * (thin.curve.ends - thin.meetings):
         return False
     worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
     if _unexplained(thin) >= worse * _unexplained(thick):

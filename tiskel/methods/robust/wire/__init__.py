@@ -40,8 +40,8 @@ SMALLEST_PART = 10  # points; separate parts with fewer get no curve, unless the
 
 def wire_curve(
     network: Network, params: RobustParams, tubes: Indices | None = None, noisy: bool = False
-) -> tuple[ConeCurve, Sections]:
-    """Return the curve of a cloud of wires, and the sections that its nodes stand for.
+) -> tuple[ConeCurve, Sections, int]:
+    """Return the curve of a cloud of wires, the sections that its nodes stand for, and how many ends met and are open.
 
     tubes (n,) name the sections of points on limbs that are known, -1 for
     others; noisy says that points of threads may look like rings.
@@ -58,8 +58,8 @@ def wire_curve(
 
 def _curve(
     network: Network, links: Links, params: RobustParams, tubes: Indices | None, noisy: bool
-) -> tuple[ConeCurve, Sections]:
-    """Return the curve that keeps to links, and its sections."""
+) -> tuple[ConeCurve, Sections, int]:
+    """Return the curve that keeps to links, its sections, and how many ends met something and are left open."""
     points = network.points
     root = None if params.root is None else network.placed(params.root)
     routes = routes_of(points, links, root)
@@ -71,4 +71,5 @@ def _curve(
         limbs = limbs_of(levels, links.spacing)
     curve, sections = curve_of(points, links.spacing, levels, limbs, params)
     curve = without_spurs(curve, links.spacing, crowd if crowd >= FEW else 0.0)
-    return with_loops(curve, sections, links, params.topology, network.linear_share > CLEAR), sections
+    curve, left = with_loops(curve, sections, links, params.topology, network.linear_share > CLEAR)
+    return curve, sections, left

@@ -30,21 +30,25 @@ FACING = 0.0  # cosine of the end's direction to what it meets, at least
 
 def with_loops(
     curve: ConeCurve, sections: Sections, links: Links, topology: Topology, clear: bool = False
-) -> ConeCurve:  # fmt: skip
-    """Return the curve with the edges that close its loops; topology says whether there are any.
+) -> tuple[ConeCurve, int]:  # fmt: skip
+    """Return the curve with the edges that close its loops, and how many ends meet something and are left open.
+
+    topology says whether there are loops.
 
     Of its own accord only in parts that are no trees. Where the wires are clear
     lines, which hardly touch by chance, a few meetings are enough.
     """
     if topology == "tree":
-        return curve
+        return curve, 0
     pairs, strands = _meetings(curve, sections, links)
+    meetings = len(pairs) + len(strands)
     if topology == "auto" and len(pairs):
         pairs = pairs[_looped(curve, pairs, clear)]
+    left = meetings - len(pairs)
     if not len(pairs):
-        return curve
+        return curve, left
     closed = with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32))
-    return _without(closed, strands) if clear else closed  # in a crown some of them are twigs
+    return (_without(closed, strands) if clear else closed), left  # in a crown some of them are twigs
 
 
 def _without(curve: ConeCurve, ends: list[int]) -> ConeCurve:
