@@ -41,6 +41,8 @@ from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.openings import open_ends_in_sight
 from tiskel.methods.robust.turning import flat_points, one_sided_nodes
 
+AIR = "{share} of the curve is in the air: neither at the points nor between them"
+
 
 def doubts_of(judged: Judged) -> tuple[CurveWarning, ...]:
     """Return the warnings and notes about a curve, what weighs most first.
@@ -77,18 +79,14 @@ def _in_air(j: Judged) -> CurveWarning | None:
     air = in_the_air(j.graph, j.samples, j.points, j.spacings)
     counted = measured if j.bridged_share > levels.BRIDGED_SHARE else np.ones_like(measured)  # nobody is told twice
     if (much := air.share_of(counted)) > levels.AIR_MUCH:
-        text, places = (
-            "{share} of the curve is in the air: neither at the points nor between them",
-            air.places & counted,
-        )
-        return _doubt("in-air", text, much, j.samples.points[places], air.distance[places])
+        places = air.places & counted
+        return _doubt("in-air", AIR, much, j.samples.points[places], air.distance[places])
     share = air.share_of(measured)
     if share <= levels.AIR_SHARE:
         return None
     wide = in_the_air(j.graph, j.samples, j.points, j.spacings, half=levels.HOLE * j.sample_radii)
     serious = air.share_of(measured & wide.places) > levels.AIR_SERIOUS
-    text = "{share} of the curve is in the air: neither at the points nor between them"
-    text += "" if serious else ", over holes in the scan"
+    text = AIR if serious else AIR + ", over holes in the scan"
     places = air.places & (measured & wide.places if serious else measured)
     return _doubt("in-air", text, share, j.samples.points[places], air.distance[places], _severity(serious))
 

@@ -11,10 +11,9 @@ SURFACE_POINTS = 16_384  # of larger clouds so many are taken to ask for inside 
 AIR_SHARE = 0.01  # of the length in the air, bridges aside
 HOLE = 1.5  # radii; half the length of a hole in the scan: points before and behind it count as about the curve
 AIR_SERIOUS = 0.02  # of the length that is in the air even so: from there on it is a warning
-AIR_MUCH = (
-    0.06  # of the length in the air, over holes and bridges too: from there on it is a warning [true curves to 0.052
-)
-# where a fifth of the surface is missing]
+# Of the length in the air, over holes and bridges too: from there on it is a warning [true curves of which a fifth of
+# the surface is missing to 0.052].
+AIR_MUCH = 0.06
 CLEARLY_OUTSIDE = 0.25  # winding number; holes in the scan take some away from places inside
 THICK = 2.0  # spacings in a radius; where nothing is thicker there is no inside to speak of
 OUTSIDE_SHARE = 0.05  # of the places outside the body

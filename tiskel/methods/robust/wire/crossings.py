@@ -1,9 +1,9 @@
 """Crossings: two wires that pass each other closely, and hang together in a graph of neighbours.
 
-About a place where they pass, a graph of neighbours leads from one wire to the other. Each goes straight on there
-(Tan et al. 2012 and others who trace crossing filaments pair what goes straight on): so a curve through the arms at
-both sides, without what lies between, says where a wire passes. Where the two curves are further apart than the
-points are, the wires do not touch. Where they are not, the wires are joined, as in a lattice.
+About a place where they pass, a graph of neighbours leads from one wire to the other. Each goes straight on there, so
+that a curve through the arms at both sides, without what lies between, says where a wire passes. Where the two curves
+are further apart than the points are, the wires do not touch. Where they are not, the wires are joined, as in a
+lattice.
 """
 
 from dataclasses import dataclass, replace
