@@ -113,11 +113,13 @@ class Plugin:
             chosen.sort(key=lambda item: _cost(tests[item.nodeid]["seconds"], *ran[function, item.nodeid]))
             limit = SLACK + FACTOR * math.ceil(seconds)
             begun = time.monotonic()
+            self._comes_to(0)
             code = _forked(partial(self._mutant, chosen, mutant, limit), WAITING * limit) if chosen else None
-            for item in chosen[: self._came_to() + 1]:
+            last = self._came_to() if chosen else -1
+            for item in chosen[: last + 1]:
                 ran[function, item.nodeid][0] += 1
             if chosen and code != 0:
-                ran[function, chosen[self._came_to()].nodeid][1] += 1
+                ran[function, chosen[last].nodeid][1] += 1
             with told.open("a") as file:
                 file.write(json.dumps([mutant, _verdict(code), round(time.monotonic() - begun, 2)]) + "\n")
         return True
@@ -153,11 +155,14 @@ class Plugin:
         resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
         trampoline.set_mutant_under_test(mutant)
         for at, (item, following) in enumerate(zip(items, [*items[1:], None], strict=True)):
-            os.pwrite(self.at, b"%8d" % at, 0)
+            self._comes_to(at)
             item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
             if self.failed:
                 return 1
         return 0
+
+    def _comes_to(self, at: int) -> None:
+        os.pwrite(self.at, b"%8d" % at, 0)
 
     def _came_to(self) -> int:
         """Return the place of the test that the last mutant ran last."""

@@ -7,6 +7,7 @@ import numpy as np
 from scipy import sparse
 
 from tiskel.arrays import Edges, Indices, Mask, Numbers, Points, resolved
+from tiskel.geometry.frames import step_lengths
 from tiskel.geometry.graph import CurveGraph, edge_keys, tidy_edges
 
 
@@ -60,6 +61,10 @@ class ConeCurve(CurveGraph):
         degree = self.degrees
         both = [path for branch in self.branches if len(branch) > 1 for path in (branch, branch[::-1])]
         return [path for path in both if (degree[path[0]] == 1 if ends else degree[path[0]] > 2)]
+
+    def along(self, path: Indices) -> Numbers:
+        """Return (p,) how far each node of a path is from its first, along it."""
+        return np.append(0.0, np.cumsum(step_lengths(self.nodes[path])))
 
     def heading(self, path: Indices) -> Numbers:
         """Return the direction that a path from an end looks in, taken over two edges where there are two."""

@@ -149,11 +149,11 @@ def _contacts(j: Judged) -> CurveWarning | None:
     if wires and graph.loops >= levels.NET and (each := graph.length / graph.loops / j.spacing) < levels.MESH:
         text = f"{graph.loops} loops of wire, one for {each:.0f} spacings of it: wires side by side may run together"
         return CurveWarning("contacts", text, share=1.0)
-    ends = touching_ends(j.graph, j.spacing)
-    if not len(ends) or (share := len(ends) / j.graph.ends) <= levels.CONTACTS:
+    ends = touching_ends(graph, j.spacing)
+    if not len(ends) or (share := len(ends) / graph.ends) <= levels.CONTACTS:
         return None
-    text = f"{len(ends)} of {j.graph.ends} ends lie at another part of the curve: which limbs go on there is a guess"
-    return _doubt("contacts", text, share, j.graph.nodes[ends], None, _severity(share > levels.CONTACTS_SERIOUS))
+    text = f"{len(ends)} of {graph.ends} ends lie at another part of the curve: which limbs go on there is a guess"
+    return _doubt("contacts", text, share, graph.nodes[ends], None, _severity(share > levels.CONTACTS_SERIOUS))
 
 
 def _far(j: Judged) -> CurveWarning | None:

@@ -11,7 +11,6 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from tiskel.arrays import Indices, Points
-from tiskel.geometry.frames import step_lengths
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes
 from tiskel.methods.robust.fit import fit_cones
@@ -59,9 +58,9 @@ def _rungs(found: Candidate) -> list[Indices]:
     rungs = []
     for path in curve.branches:
         ends = [int(path[0]), int(path[-1])]
-        if ends[0] != ends[1] and all(len(paths.get(end, ())) == 3 for end in ends) and _in_air(found, path):
+        if ends[0] != ends[1] and all(len(paths.get(end, ())) == 3 for end in ends):
             arms = [[_arm(curve, arm) for arm in paths[end] if not np.isin(arm[1], path)] for end in ends]
-            if all(len(pair) == 2 for pair in arms) and _apart(*arms):
+            if all(len(pair) == 2 for pair in arms) and _apart(*arms) and _in_air(found, path):
                 rungs.append(path)
     return rungs
 
@@ -77,7 +76,7 @@ def _in_air(found: Candidate, path: Indices) -> bool:
 def _arm(curve: ConeCurve, path: Indices) -> tuple[Points, float]:
     """Return the places (a, 3) on a limb beside a joint that say where it goes, and its radius."""
     radius = float(np.median(curve.radii[path[1:]]))
-    way = np.append(0, np.cumsum(step_lengths(curve.nodes[path])))
+    way = curve.along(path)
     return curve.nodes[path[(way >= ABOUT * radius) & (way <= ARM * radius)]], radius
 
 

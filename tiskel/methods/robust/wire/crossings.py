@@ -13,7 +13,6 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from tiskel.arrays import Indices, Points
-from tiskel.geometry.frames import step_lengths
 from tiskel.geometry.graph import component_labels
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.wire.links import Links
@@ -67,7 +66,7 @@ def _joints(curve: ConeCurve, spacing: float) -> list[list[Points]]:
     Junctions that a short branch links are one joint.
     """
     paths = curve.paths_from(ends=False)
-    length = [np.append(0, np.cumsum(step_lengths(curve.nodes[path]))) for path in paths]
+    length = [curve.along(path) for path in paths]
     short = [path[[0, -1]] for path, way in zip(paths, length, strict=True) if way[-1] <= 2 * ABOUT * spacing]
     linked = np.array([pair for pair in short if (curve.degrees[pair] > 2).all()], np.int32).reshape(-1, 2)
     joint = component_labels(len(curve.nodes), linked)

@@ -81,7 +81,7 @@ def _modelled(
         known = np.flatnonzero(measured[branch])
         if len(known) < 2:
             continue
-        way = np.append(0, np.cumsum(np.linalg.norm(np.diff(curve.nodes[branch], axis=0), axis=1)))
+        way = curve.along(branch)
         inner = np.arange(known[0] + 1, known[-1])
         inner = inner[~measured[branch[inner]]]
         radii[branch[inner]] = np.interp(way[inner], way[known], radii[branch[known]])

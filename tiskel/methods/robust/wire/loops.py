@@ -20,8 +20,8 @@ from tiskel.params import Topology
 # Found by trial on rings, stents and generated trees.
 REACH = 4.0  # spacings between the points of an end and of what it meets, at most
 DETOUR = 10.0  # spacings along the curve between the two, at least
-SLIVER = 4.0  # times as long a detour may be a sliver: two wires side by side about the joint where they part
 RADII = 4.0  # the same in the sum of the radii at both
+SLIVER = 4.0  # times as long a detour may be a sliver: two wires side by side about the joint where they part
 HEAD_ON = 0.25  # share of ends that meet another end, from which on a part is no tree [trees to 0.15, lattices 0.4]
 MET = 0.1  # meetings for an end, from which on a part of clear lines is no tree [trees to 0.05, lattices 0.2 up]
 MEETINGS = 2  # of ends with ends in a part, at least: one is chance, and a quarter of the ends of a small tree
@@ -47,8 +47,12 @@ def with_loops(
     left = meetings - len(pairs)
     if not len(pairs):
         return curve, left
-    closed = with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32))
+    closed = _closed(curve, pairs)
     return (_without(closed, strands) if clear else closed), left  # in a crown some of them are twigs
+
+
+def _closed(curve: ConeCurve, pairs: Edges) -> ConeCurve:
+    return with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32))
 
 
 def _without(curve: ConeCurve, ends: list[int]) -> ConeCurve:
@@ -66,7 +70,7 @@ def _looped(curve: ConeCurve, pairs: Edges, clear: bool) -> Mask:
     In clear lines a few meetings are many.
     """
     part = component_labels(len(curve.nodes), curve.edges)
-    closed = with_nodes(curve, np.zeros((0, 3)), np.zeros(0), pairs, np.zeros(0, np.int32))
+    closed = _closed(curve, pairs)
     count, end = int(part.max()) + 1, curve.degrees == 1
     ends, left = (np.bincount(part[graph.degrees == 1], minlength=count) for graph in (curve, closed))
     loops = np.bincount(part[pairs[:, 0]], minlength=count)
