@@ -9,6 +9,8 @@ Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
 Indices = ti.types.ndarray(dtype=ti.i32, ndim=1)
 Table = ti.types.ndarray(dtype=ti.i32, ndim=2)
 
+BELOW = 1 - 1e-9  # of a squared distance: what rounding might take off it
+
 
 @ti.func
 def beside_cone(point, start, end, first: ti.f64, last: ti.f64):
@@ -46,6 +48,17 @@ def on_cone(point, start, end, first: ti.f64, last: ti.f64):
     return share, (offset - share * axis).norm() - (1.0 - share) * first - share * last
 
 
+@ti.func
+def foot(point, start, end, first: ti.f64, last: ti.f64, radial: ti.i32):
+    """Return where the foot is and how far out the point is, perpendicular to the axis or to the surface."""
+    share, out = 0.0, 0.0
+    if radial == 1:
+        share, out = beside_cone(point, start, end, first, last)
+    else:
+        share, out = on_cone(point, start, end, first, last)
+    return share, out
+
+
 @ti.kernel
 def _cone_feet(
     points: Points,  # (n,)
@@ -55,6 +68,8 @@ def _cone_feet(
     nodes: Points,  # (v,)
     radii: Numbers,  # (v,)
     edges: Table,  # (e, 2)
+    middles: Points,  # (e,) of the edges
+    reaches: Numbers,  # (e,) of balls about them that hold the cones
     signed: ti.i32,  # whether the least distance counts, or the least in size
     radial: ti.i32,  # whether perpendicular to the axis, or to the surface
     # outputs
@@ -62,25 +77,38 @@ def _cone_feet(
     share: Numbers,  # (p,) of the way along it
     residual: Numbers,  # (p,) distance to its surface, negative inside
 ):
-    """Place each point on the candidate whose surface is nearest; the first of equals."""
+    """Place each point on the candidate whose surface is nearest; the first of equals.
+
+    The edge with the nearest middle is tried first: what is farther than it, by the ball that holds the cone, is passed
+    over.
+    """
     for i in rows:
-        best = ti.math.inf
+        point, mine = points[rows[i]], lists[i]
         edge[i] = -1
+        nearest, at = ti.math.inf, -1
         for k in range(candidates.shape[1]):
-            c = candidates[lists[i], k]
+            c = candidates[mine, k]
             if c >= 0:
-                a, b = edges[c, 0], edges[c, 1]
-                s, d = on_cone(points[rows[i]], nodes[a], nodes[b], radii[a], radii[b])
-                if radial == 1:
-                    s, d = beside_cone(points[rows[i]], nodes[a], nodes[b], radii[a], radii[b])
-                size = d
-                if signed == 0:
-                    size = ti.abs(d)
-                if size < best:
-                    best = size
-                    edge[i] = c
-                    share[i] = s
-                    residual[i] = d
+                square = (point - middles[c]).norm_sqr()
+                if square < nearest or at < 0:
+                    nearest, at = square, c
+        best = ti.math.inf
+        if at >= 0:
+            a, b = edges[at, 0], edges[at, 1]
+            s, d = foot(point, nodes[a], nodes[b], radii[a], radii[b], radial)
+            best = d if signed == 1 else ti.abs(d)
+            edge[i], share[i], residual[i] = at, s, d
+        for k in range(candidates.shape[1]):
+            c = candidates[mine, k]
+            if c >= 0 and c != at:
+                limit = best + reaches[c]
+                if limit > 0.0 and (point - middles[c]).norm_sqr() * BELOW <= limit * limit:
+                    a, b = edges[c, 0], edges[c, 1]
+                    s, d = foot(point, nodes[a], nodes[b], radii[a], radii[b], radial)
+                    size = d if signed == 1 else ti.abs(d)
+                    if size < best or (size == best and c < edge[i]):
+                        best = size
+                        edge[i], share[i], residual[i] = c, s, d
 
 
 cone_feet = started(_cone_feet)

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from .runtime import started
+from .spreading import is_piece, spread
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)
 Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
@@ -41,21 +42,25 @@ def _winding_numbers(
     # outputs
     out: Numbers,  # (m,)
 ):
-    for group in range(queries.shape[0] // LANES):
-        x, y, z, total = Lanes(0.0), Lanes(0.0), Lanes(0.0), Lanes(0.0)
-        for i in ti.static(range(LANES)):
-            query = queries[group * LANES + i]
-            x[i], y[i], z[i] = query[0], query[1], query[2]
-        for b in range(centres.shape[0]):
-            square = squares(centres[b], x, y, z)
-            far = square > REACH * REACH * radii[b] * radii[b]
-            total += ti.select(far, fluxes(centres[b], moments[b], square, x, y, z), 0.0)
-            if not far.all():  # softened below the size of the patch
-                for j in range(b * BLOCK, ti.min((b + 1) * BLOCK, points.shape[0])):
-                    near = fluxes(points[j], dipoles[j], squares(points[j], x, y, z) + softening[j], x, y, z)
-                    total += ti.select(far, 0.0, near)
-        for i in ti.static(range(LANES)):
-            out[group * LANES + i] = total[i] / (4.0 * ti.math.pi)
+    groups = queries.shape[0] // LANES
+    bits = spread(groups)
+    for number in range(groups << bits):
+        if is_piece(number, bits):
+            group = number >> bits
+            x, y, z, total = Lanes(0.0), Lanes(0.0), Lanes(0.0), Lanes(0.0)
+            for i in ti.static(range(LANES)):
+                query = queries[group * LANES + i]
+                x[i], y[i], z[i] = query[0], query[1], query[2]
+            for b in range(centres.shape[0]):
+                square = squares(centres[b], x, y, z)
+                far = square > REACH * REACH * radii[b] * radii[b]
+                total += ti.select(far, fluxes(centres[b], moments[b], square, x, y, z), 0.0)
+                if not far.all():  # softened below the size of the patch
+                    for j in range(b * BLOCK, ti.min((b + 1) * BLOCK, points.shape[0])):
+                        near = fluxes(points[j], dipoles[j], squares(points[j], x, y, z) + softening[j], x, y, z)
+                        total += ti.select(far, 0.0, near)
+            for i in ti.static(range(LANES)):
+                out[group * LANES + i] = total[i] / (4.0 * ti.math.pi)
 
 
 winding_numbers = started(_winding_numbers)

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Edges, Mask, Numbers, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.oriented import OrientedCloud, checked
-from tiskel.geometry.round_cones import ConeGraph, cone_areas, touching, visible
+from tiskel.geometry.round_cones import ConeGraph, bounding_balls, cone_areas, touching, visible
 
 FINE = 0.15  # local radii between samples of a union: the distance to the nearest is 0.6 % too long at the axis
 MOST = 1_000_000  # samples of a union: bounds the memory; a larger one is sampled more coarsely
@@ -73,7 +73,8 @@ class ConeBody:
         every = np.arange(len(shape.edges), dtype=np.int32)[None]
         rows, lists = np.arange(count, dtype=np.int32), np.zeros(count, np.int32)
         arrays = [np.ascontiguousarray(array) for array in (places, shape.nodes, shape.radii, shape.edges)]
-        cone_feet(arrays[0], rows, lists, every, *arrays[1:], 1, 0, edge, share, out)
+        held = bounding_balls(shape.nodes, shape.radii, shape.edges)
+        cone_feet(arrays[0], rows, lists, every, *arrays[1:], *held, 1, 0, edge, share, out)
         return np.asarray(out < 0)
 
     def distances(self, places: Points) -> Numbers:

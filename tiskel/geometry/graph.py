@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Edges, Indices, Lists, Mask, Numbers, Pairs, Points
 from tiskel.geometry.branches import branches_of
+from tiskel.geometry.distinct import distinct
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 from tiskel.shown import Shown
@@ -167,7 +168,7 @@ def tidy_edges(edges: Edges) -> Edges:
     (f, 2) int32
         In ascending order.
     """
-    keys = np.unique(edge_keys(edges))
+    keys = distinct(edge_keys(edges))
     return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
 
 

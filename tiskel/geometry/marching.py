@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Edges, Mask, Numbers, Points
+from tiskel.geometry.distinct import distinct
 
 Cells = npt.NDArray[np.int64]  #: shape (n,), keys of grid places, or (n, 8) of the corners of cells
 
@@ -72,7 +73,7 @@ def marched(values: Callable[[Points], Numbers], seeds: Points, step: float, mos
     origin = seeds.min(axis=0) - step * 2 ** (SIDE - 2)
     grid = _Grid(values, origin, step)
     nearest = np.rint((seeds - origin) / step).astype(np.int64)
-    cells = np.unique(grid.keys(nearest[:, None] - CORNERS))  # the eight about the nearest place of the grid
+    cells = distinct(grid.keys(nearest[:, None] - CORNERS))  # the eight about the nearest place of the grid
     done = cells[:0]
     while len(cells) and len(done) < most:
         inside = grid.inside(cells)
@@ -83,7 +84,7 @@ def marched(values: Callable[[Points], Numbers], seeds: Points, step: float, mos
             grid.keys(place[mixed[:, face].any(axis=1) & ~mixed[:, face].all(axis=1)] + shift)
             for face, shift in zip(FACES, SHIFTS, strict=True)
         ]
-        cells = np.setdiff1d(np.unique(np.concatenate(beside)), done)
+        cells = np.setdiff1d(distinct(np.concatenate(beside)), done, assume_unique=True)
     return _triangles(grid, done)
 
 
@@ -110,7 +111,7 @@ class _Grid:
     def inside(self, cells: Cells) -> npt.NDArray[np.bool_]:
         """Return (n, 8) which corners of cells (n,) are inside; those not yet known are looked up."""
         corners = self.corners(cells)
-        new = np.setdiff1d(np.unique(corners), self.known)
+        new = np.setdiff1d(distinct(corners), self.known, assume_unique=True)
         if len(new):
             found = self.values(self.origin + self.step * self.places(new))
             order = np.argsort(known := np.concatenate([self.known, new]), kind="stable")

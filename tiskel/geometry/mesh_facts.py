@@ -8,6 +8,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from tiskel.arrays import Indices
+from tiskel.geometry.distinct import distinct
 from tiskel.geometry.mesh import TriangleMesh
 
 
@@ -110,7 +111,7 @@ def facts_of(mesh: TriangleMesh) -> MeshFacts:
     per_part = np.bincount(part_of_piece, genus).astype(int)
     order = np.argsort(-np.bincount(mesh.part, mesh.areas), kind="stable")
     return MeshFacts(
-        len(np.unique(faces)), len(faces), len(per_part), int(rims.sum()), halves.crowded,
+        len(distinct(faces)), len(faces), len(per_part), int(rims.sum()), halves.crowded,
         bool(halves.opposite.all()), tuple(per_part[order].tolist()),
     )  # fmt: skip
 

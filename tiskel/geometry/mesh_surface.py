@@ -8,6 +8,7 @@ from scipy import sparse
 
 from tiskel.arrays import Edges, Indices, Lists, Masks, Numbers, Pairs, Points
 from tiskel.errors import TiskelError
+from tiskel.geometry.distinct import distinct
 from tiskel.geometry.mesh import pair_keys
 
 HOPS = 3  # cells of other points, at most, between two that are neighbours; as far as thirty nearest reach
@@ -75,7 +76,7 @@ class MeshSurface:
 def unique_pairs(pairs: Pairs) -> Edges:
     """Return pairs (n, 2) once each, the lower number first."""
     count = int(pairs.max(initial=0)) + 1
-    keys = np.unique(pair_keys(pairs, count))
+    keys = distinct(pair_keys(pairs, count))
     return np.stack([keys // count, keys % count], axis=1).astype(np.int32)
 
 

@@ -5,6 +5,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
 from tiskel.arrays import Indices, Lists, Numbers, Points
+from tiskel.geometry.distinct import distinct
 
 
 def propagated_signs(neighbours: Lists, normals: Points) -> tuple[Numbers, Indices]:
@@ -30,7 +31,7 @@ def propagated_signs(neighbours: Lists, normals: Points) -> tuple[Numbers, Indic
     count = len(normals)
     i = np.repeat(np.arange(count), neighbours.shape[1] - 1)
     j = neighbours[:, 1:].ravel()
-    keys = np.unique(np.minimum(i, j) * np.int64(count) + np.maximum(i, j))
+    keys = distinct(np.minimum(i, j) * np.int64(count) + np.maximum(i, j))
     i, j = (keys // count).astype(np.int32), (keys % count).astype(np.int32)  # all that older SciPy's trees take
     weight = 1 - np.abs(np.einsum("ij,ij->i", normals[i], normals[j])) + 1e-6  # zeros would be no edges
     tree = minimum_spanning_tree(sparse.coo_array((weight, (i, j)), shape=(count, count)).tocsr())

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import Indices, Mask, Numbers, Points
+from tiskel.arrays import Edges, Indices, Mask, Numbers, Points
 from tiskel.geometry.frames import across
 from tiskel.geometry.graph import CurveGraph
 
@@ -110,10 +110,16 @@ def sample_union(shape: ConeGraph, count: int, generator: np.random.Generator) -
     return np.concatenate(found)[:count]
 
 
+def bounding_balls(nodes: Points, radii: Numbers, edges: Edges) -> tuple[Points, Numbers]:
+    """Return the middles (e, 3) of edges (e, 2) between nodes (v, 3), and the radii of balls that hold their cones."""
+    ends = nodes[edges]
+    half = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2
+    return np.ascontiguousarray(ends.mean(axis=1)), half + radii[edges].max(axis=1)
+
+
 def touching(shape: ConeGraph) -> list[Indices]:
     """Return for each part (k,) int32 the others whose bounding balls meet its own."""
-    ends = shape.nodes[shape.edges]
-    middle, reach = ends.mean(axis=1), shape.lengths / 2 + shape.radii[shape.edges].max(axis=1)
+    middle, reach = bounding_balls(shape.nodes, shape.radii, shape.edges)
     lists = cKDTree(middle).query_ball_point(middle, 1.01 * (reach + reach.max()), return_sorted=True)
     found = []
     for e, near in enumerate(lists):

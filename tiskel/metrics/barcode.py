@@ -14,6 +14,7 @@ from scipy.spatial import Delaunay
 
 from tiskel.arrays import FLATNESS, TINY, Edges, Numbers, Points, Table
 from tiskel.extras import extra
+from tiskel.geometry.distinct import distinct
 from tiskel.geometry.graph import edge_lengths
 from tiskel.geometry.spanning import spanning_tree
 
@@ -95,7 +96,7 @@ def delaunay_edges(points: Points) -> Edges:
         pairs = [made.simplices[:, list(pair)] for pair in combinations(range(flat.shape[1] + 1), 2)]
         edges = np.concatenate([*pairs, made.coplanar[:, [0, 2]]])
     edges = np.sort(edges, axis=1).astype(np.int64)
-    keys = np.unique(edges[:, 0] * len(points) + edges[:, 1])
+    keys = distinct(edges[:, 0] * len(points) + edges[:, 1])
     return np.stack([keys // len(points), keys % len(points)], axis=1).astype(np.int32)
 
 

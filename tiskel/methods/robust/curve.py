@@ -7,6 +7,7 @@ import numpy as np
 from scipy import sparse
 
 from tiskel.arrays import Edges, Indices, Mask, Numbers, Points, resolved
+from tiskel.geometry.distinct import distinct
 from tiskel.geometry.frames import step_lengths
 from tiskel.geometry.graph import CurveGraph, edge_keys, tidy_edges
 
@@ -74,7 +75,7 @@ class ConeCurve(CurveGraph):
 def keeps_loops(curve: ConeCurve, into: Indices) -> bool:
     """Tell whether contracting along edges keeps all loops."""
     into = resolved(into)
-    left = len(tidy_edges(into[curve.edges])) - len(np.unique(into))
+    left = len(tidy_edges(into[curve.edges])) - len(distinct(into))
     return left == len(curve.edges) - len(curve.nodes)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from scipy import sparse
 
 from tiskel.arrays import TINY, Indices, Lists, Mask, Numbers, Pairs, Points, Stack, Table
+from tiskel.geometry.round_cones import bounding_balls
 from tiskel.geometry.solve import BACKENDS
 from tiskel.methods.robust.curve import ConeCurve
 
@@ -150,7 +151,8 @@ def foot_points(
     count = len(rows)
     edge, share, residual = np.empty(count, np.int32), np.empty(count), np.empty(count)
     tables = [np.ascontiguousarray(table, np.int32) for table in (rows, lists, candidates)]
-    cone_feet(points, *tables, curve.nodes, curve.radii, curve.edges, signed, radial, edge, share, residual)
+    held = bounding_balls(curve.nodes, curve.radii, curve.edges)
+    cone_feet(points, *tables, curve.nodes, curve.radii, curve.edges, *held, signed, radial, edge, share, residual)
     on = edge >= 0
     return ConeFit(curve, tables[0][on], edge[on], share[on], residual[on])
 

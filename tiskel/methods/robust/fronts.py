@@ -15,6 +15,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
 from tiskel.arrays import TINY, Indices, Numbers, Points
+from tiskel.geometry.distinct import distinct
 from tiskel.geometry.graph import component_labels
 from tiskel.geometry.rings import smallest_distances
 from tiskel.methods.robust.axes import on_axes
@@ -94,7 +95,7 @@ def front(
     graph = network.links.copy()
     graph.data = np.maximum(2 * length / (widths[first] + widths[second]), TINY)
     distance = np.full(len(part), np.nan)
-    for number in np.unique(part[part >= 0]):
+    for number in distinct(part[part >= 0]):
         rows: Indices = np.flatnonzero(part == number).astype(np.int32)
         start = _end(graph, rows, contracted, aside)
         distance[rows] = dijkstra(graph, directed=False, indices=start)[rows]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
+from tiskel.geometry.distinct import distinct
 from tiskel.geometry.graph import tidy_edges
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
@@ -105,6 +106,6 @@ def _fitted(curve: ConeCurve, points: Points, section: Indices, params: RobustPa
     )  # fmt: skip
     fitted = fit_cones(part, points, name[section], rounds=params.rounds, straightness=params.straightness).curve
     nodes, radii = curve.nodes.copy(), curve.radii.copy()
-    linked = np.unique(edges)
+    linked = distinct(edges)
     nodes[inside[linked]], radii[inside[linked]] = fitted.nodes[linked], fitted.radii[linked]
     return replace(curve, nodes=nodes, radii=radii)

@@ -7,6 +7,7 @@ short ones, so that routes do not cut corners through the air.
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
@@ -72,8 +73,9 @@ def _roots(points: Points, part: Indices, root: Numbers | None) -> Indices:
 def _crowds(points: Points, part: Indices, reach: float) -> Indices:
     """Return (n,) how many points are within reach of each, 0 where a part's largest number cannot be.
 
-    No more are within reach than in the cells about. Those with most there are
-    asked first, then all that may have as many as the best of these.
+    In every cell, of a share of the reach, one point of each part is asked: in the next few as many are about. And no
+    more are within reach than in the cells about: those with most there are asked first, then all that may have as
+    many as the best of these.
     """
     corner, cell = numbered(np.floor((points - points.min(axis=0)) * (FINER / reach)).astype(np.int64))
     tree, centres = cKDTree(points), cKDTree(corner)
@@ -85,15 +87,26 @@ def _crowds(points: Points, part: Indices, reach: float) -> Indices:
         + np.bincount(near[:, 1], held[near[:, 0]], len(held))
     )
     bound, crowd = most[cell], np.zeros(len(points), int)
+    asked = _one_of_each(points, part * np.int64(len(held)) + cell)
     largest = np.zeros(int(part.max()) + 1)
     np.maximum.at(largest, part, bound)
-    first = np.flatnonzero(bound >= largest[part])
+    first = asked[bound[asked] >= largest[part[asked]]]
     crowd[first] = tree.query_ball_point(points[first], reach, return_length=True)
     best = np.zeros_like(largest)
     np.maximum.at(best, part, crowd)
-    rest = np.flatnonzero((bound >= best[part]) & (bound < largest[part]))
+    rest = asked[(bound[asked] >= best[part[asked]]) & (bound[asked] < largest[part[asked]])]
     crowd[rest] = tree.query_ball_point(points[rest], reach, return_length=True)
     return crowd
+
+
+def _one_of_each(points: Points, group: npt.NDArray[np.int64]) -> Indices:
+    """Return of every group the point (g,) that is nearest to the mean of all of it, whatever their order."""
+    number = np.unique(group, return_inverse=True)[1].ravel()
+    sizes = np.bincount(number)
+    means = np.stack([np.bincount(number, axis) for axis in points.T], axis=1) / sizes[:, None]
+    away = ((points - means[number]) ** 2).sum(axis=1)
+    order = np.lexsort((*points.T, away, number))
+    return order[np.searchsorted(number[order], np.arange(len(sizes)))].astype(np.int32)
 
 
 def _most_crowded(points: Points, rows: Indices, crowd: Indices) -> int:
