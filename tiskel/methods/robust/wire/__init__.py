@@ -10,8 +10,10 @@ TEASAR, Sato et al. 2000; Verroust and Lazarus 2000):
 4. The longest way is a limb; of every next one, what stands apart from the limbs before (:mod:`.limbs`).
 5. Nodes are the means of their points; where these lie all about the limb, round cones are fitted, and the radius is
    measured, elsewhere it is a bound (:mod:`.curve`).
-6. Loops, where ends meet head on and the body is no tree (:mod:`.loops`).
-7. Where wires that are clear lines pass each other, apart, links from one to the other go, and 2 to 6 are done anew
+6. Ends that are noise, or strands of one limb side by side, go (:mod:`.spurs`); those of noisy wires are put on the lines
+   of their limbs (:mod:`.tips`).
+7. Loops, where ends meet head on and the body is no tree (:mod:`.loops`).
+8. Where wires that are clear lines pass each other, apart, links from one to the other go, and 2 to 7 are done anew
    (:mod:`.crossings`).
 """
 
@@ -26,6 +28,7 @@ from tiskel.methods.robust.wire.links import BRIDGE, Links, links_of
 from tiskel.methods.robust.wire.loops import with_loops
 from tiskel.methods.robust.wire.routes import routes_of
 from tiskel.methods.robust.wire.spurs import without_spurs
+from tiskel.methods.robust.wire.tips import on_their_lines
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
 
@@ -70,6 +73,6 @@ def _curve(
         levels = levels_of(points, links, routes, BRIDGE, THREADS, tubes)
         limbs = limbs_of(levels, links.spacing)
     curve, sections = curve_of(points, links.spacing, levels, limbs, params)
-    curve = without_spurs(curve, links.spacing, crowd if crowd >= FEW else 0.0)
+    curve = on_their_lines(without_spurs(curve, links.spacing, crowd if crowd >= FEW else 0.0))
     curve, left = with_loops(curve, sections, links, params.topology, network.linear_share > CLEAR)
     return curve, sections, left

@@ -10,6 +10,9 @@ SPUR = 2.0  # radii of its joint that an end branch is long at least [by trial o
 # and of its tips 8 % fewer are real]
 SPARSE = 2.0  # standard deviations, of the number of points that its length has elsewhere, that it has fewer
 SHORT = 6.0  # spacings: longer ones are no noise, however few their points are
+# Strands of one limb run beside each other, twigs part.
+STRANDS = 3.0  # spacings from strand to strand at most
+PARTS = 0.4  # of its length that the end of a twig is from all other limbs, at least
 
 
 def without_spurs(curve: ConeCurve, spacing: float, crowding: float) -> ConeCurve:
@@ -32,7 +35,7 @@ def without_spurs(curve: ConeCurve, spacing: float, crowding: float) -> ConeCurv
                 expected = crowding * length / spacing
                 few = float(points[path[:-1]].sum()) < expected - SPARSE * np.sqrt(expected)
                 least = max(SPUR * float(curve.radii[joint]), SHORT * spacing if few else 0.0)
-                if length < least or _beside(curve, tree, path):
+                if length < least or _beside(curve, tree, path, STRANDS * spacing, PARTS * length):
                     shortest[joint] = min(shortest.get(joint, (np.inf, 0)), (length, number))
         if not shortest:
             return curve
@@ -42,11 +45,16 @@ def without_spurs(curve: ConeCurve, spacing: float, crowding: float) -> ConeCurv
         curve = contract_nodes(curve, into)
 
 
-def _beside(curve: ConeCurve, tree: cKDTree, path: Indices) -> bool:
-    """Tell whether all nodes of an end branch are within the reach of nodes that are not on it."""
+def _beside(curve: ConeCurve, tree: cKDTree, path: Indices, close: float, parted: float) -> bool:
+    """Tell whether an end branch runs within the reach of nodes that are not on it, or beside them all its length.
+
+    It does so where it is close to them everywhere, and has not parted from them at its end.
+    """
     own = path[:-1]
     distance, near = tree.query(curve.nodes[own], k=min(len(own) + 1, len(curve.nodes)))
     other = ~np.isin(near, own)
     nearest = np.where(other, distance, np.inf).argmin(axis=1)
     rows = np.arange(len(own))
-    return bool((distance[rows, nearest] <= SPUR * curve.radii[near[rows, nearest]]).all())
+    away = distance[rows, nearest]
+    strand = away[0] < parted and (away <= close).all()
+    return bool(strand or (away <= SPUR * curve.radii[near[rows, nearest]]).all())
