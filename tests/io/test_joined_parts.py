@@ -10,6 +10,7 @@ from tiskel import (
     CurveGraph,
     CurveWarning,
     JoinParams,
+    Progress,
     Skeleton,
     SplitParams,
     TiskelError,
@@ -144,3 +145,21 @@ def test_a_part_without_a_curve_and_a_file_that_is_no_tile_are_refused(tube: Pat
     cloud.write_bytes(dump_cloud(load_cloud(cloud).points, cloud))
     with pytest.raises(TiskelError, match=r"t0001\.ply is no tile: it has no properties row and core"):
         join_skeletons(tube)
+
+
+def test_split_and_join_tell_how_far_they_are_and_stay_the_same(tube: Path, tmp_path: Path) -> None:
+    split: list[Progress] = []
+    params = SplitParams(points=1500, overlap=10.0)
+    split_cloud(tmp_path / "c.npy", tmp_path / "again", params, progress=split.append)
+    assert [one.part for one in split] == ["counting", "writing", *["writing"] * 2, ""]  # two tiles, one piece
+    assert {one.stage for one in split} == {"split"}
+    shares = [one.share for one in split]
+    assert shares[0] == 0
+    assert 0 < shares[1] < shares[2] <= shares[3] == shares[4] == 1
+    assert (tmp_path / "again" / "index.json").read_bytes() == (tube / "index.json").read_bytes()
+    join: list[Progress] = []
+    found, _ = join_skeletons(tube, progress=join.append)
+    assert [(one.stage, one.part, one.share) for one in join] == [
+        ("join", "reading", 0), ("join", "t0000", 0), ("join", "t0001", 0.4), ("join", "joining", 0.8), ("join", "", 1),
+    ]  # fmt: skip
+    np.testing.assert_array_equal(found.nodes, join_skeletons(tube)[0].nodes)
