@@ -5,7 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tiskel import CurveGraph, CurveWarning, ShapeParams, contract, evaluate, extract_skeleton, make_shape, shape_graph
+from tiskel import (
+    CurveGraph,
+    CurveWarning,
+    ShapeParams,
+    contract,
+    evaluate,
+    extract_skeleton,
+    make_shape,
+    named_shape,
+    shape_graph,
+)
 from tiskel.arrays import Points
 from tiskel.gallery.trees import tree
 from tiskel.geometry.doubt import UNKNOWN, warning_from
@@ -17,6 +27,7 @@ from tiskel.geometry.solid import solid_of
 from tiskel.methods.robust.doubts import doubts_of
 from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.network import prepared
+from tiskel.methods.robust.turning import roughness
 
 
 def dense(graph: CurveGraph, step: float = 0.1) -> CurveGraph:
@@ -212,3 +223,24 @@ def test_a_long_flat_bar_is_a_note_and_a_plate_a_warning() -> None:
         places[rows, face] = np.sign(places[rows, face]) / 2
         s = extract_skeleton(contract(places * sides))
         assert {one.code: one.severity for one in (*s.warnings, *s.notes)}["flat"] == severity
+
+
+def test_strands_taken_for_one_tube_have_no_inside_and_noise_alone_is_not_told() -> None:
+    bundle = extract_skeleton(contract(make_shape(named_shape("bundle"))[0]))
+    assert [warning.code for warning in bundle.warnings] == ["no-inside"]
+    assert bundle.warnings[0].share > 0.2
+    noisy = extract_skeleton(contract(make_shape(shape_graph("y"), ShapeParams(noise=0.5))[0]))
+    assert "no-inside" not in [warning.code for warning in noisy.warnings]
+
+
+def test_roughness_is_none_on_a_plane_and_half_a_spacing_in_noise() -> None:
+    flat = np.random.default_rng(0).random((3000, 3)) * [1, 1, 0]
+    up = np.tile([0.0, 0, 1], (3000, 1))
+    spacing = np.full(3000, 0.02)
+    assert roughness(flat, up, spacing) == 0
+    tilted = flat + flat[:, :1] * [0, 0, 1]
+    across = np.array([-1.0, 0, 1]) / np.sqrt(2)
+    assert roughness(tilted, np.tile(across, (3000, 1)), spacing) == pytest.approx(0, abs=1e-12)
+    noise = np.random.default_rng(1).normal(scale=0.001, size=3000)
+    # The root of the mean of eight squares, each of a difference of two: of noise of a twentieth of a spacing.
+    assert roughness(flat + noise[:, None] * [0, 0, 1], up, spacing) == pytest.approx(np.sqrt(2) / 20, rel=0.15)

@@ -4,6 +4,7 @@ from heapq import heappop, heappush
 
 import numpy as np
 
+from tiskel.arrays import Mask
 from tiskel.geometry.graph import CurveGraph
 
 Steps = list[list[tuple[int, float]]]  #: for every node its neighbours along the curve, and how far they are
@@ -47,3 +48,12 @@ def way_to(found: dict[int, tuple[float, int]], goal: int) -> list[int]:
     while found[way[-1]][1] != way[-1]:
         way.append(found[way[-1]][1])
     return way
+
+
+def on_loops(graph: CurveGraph) -> Mask:
+    """Return (v,) which nodes are left when ends are taken off until there is none: loops and ways between them."""
+    left, edges = np.ones(len(graph.nodes), np.bool_), graph.edges
+    while (ends := left & (np.bincount(edges.ravel(), minlength=len(left)) < 2)).any():
+        left[ends] = False
+        edges = edges[left[edges].all(axis=1)]
+    return left

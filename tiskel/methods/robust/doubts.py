@@ -10,6 +10,7 @@ code            severity what
 ``contacts``    note     ends that lie at another part of the curve; a warning where they are many
 ``far``         warning  points far from the curve: a part without a branch
 ``flat``        warning  cones in a body whose normals hardly turn; a note where it is long, or told to be a sheet
+``no-inside``   warning  smooth tubes whose normals tell no inside: limbs side by side may be taken for one
 ``short``       warning  the body is hardly longer than thick
 ``bridged``     note     gaps crossed by straight lines; a warning where they are much of the curve
 ``small-parts`` note     points left out in small parts; a warning where they are many
@@ -26,20 +27,21 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Mask, Numbers, Points, diagonal
+from tiskel.arrays import TINY, Numbers, Points, diagonal
 from tiskel.geometry.air import in_the_air
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.doubt import CurveWarning, Severity, as_places
-from tiskel.geometry.graph import CurveGraph, component_labels
+from tiskel.geometry.graph import component_labels
 from tiskel.geometry.oriented import oriented_cloud, places_inside
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 from tiskel.geometry.representatives import few_places
+from tiskel.geometry.ways import on_loops
 from tiskel.methods.robust import levels
 from tiskel.methods.robust.contacts import touching_ends
 from tiskel.methods.robust.judged import Judged
 from tiskel.methods.robust.openings import open_ends_in_sight
-from tiskel.methods.robust.turning import flat_points, one_sided_nodes
+from tiskel.methods.robust.turning import flat_points, one_sided_nodes, roughness
 
 AIR = "{share} of the curve is in the air: neither at the points nor between them"
 
@@ -123,16 +125,7 @@ def _loops(j: Judged) -> CurveWarning | None:
         text = f"the body has {handles} handles, the curve only {loops} loops"
         return CurveWarning("loops", text, share=(handles - loops) / handles)
     text = f"the curve has {loops} loops, the body only {handles} handles"
-    return _doubt("loops", text, (loops - handles) / loops, j.graph.nodes[_cyclic(j.graph)])
-
-
-def _cyclic(graph: CurveGraph) -> Mask:
-    """Return (v,) which nodes are left when ends are taken off until there is none: loops and ways between them."""
-    left, edges = np.ones(len(graph.nodes), np.bool_), graph.edges
-    while (ends := left & (np.bincount(edges.ravel(), minlength=len(left)) < 2)).any():
-        left[ends] = False
-        edges = edges[left[edges].all(axis=1)]
-    return left
+    return _doubt("loops", text, (loops - handles) / loops, j.graph.nodes[on_loops(j.graph)])
 
 
 def _open_ends(j: Judged) -> CurveWarning | None:
@@ -193,6 +186,15 @@ def _flat(j: Judged) -> CurveWarning | None:
     return _doubt("flat", text, share, j.graph.nodes[np.unique(node)], None, _severity(not (sheet or middle)))
 
 
+def _no_inside(j: Judged) -> CurveWarning | None:
+    tubes = (j.graph.regimes == Regime.TUBE) & (j.graph.radii > levels.THICK * j.spacing)
+    if j.solid.trusted or tubes.mean() < levels.TUBES or roughness(j.points, j.normals, j.spacings) > levels.ROUGH:
+        return None
+    share = 1 - j.solid.oriented.consistency
+    text = f"{share:.0%} of the points have no inside behind them: limbs side by side may be taken for one"
+    return CurveWarning("no-inside", text + ", or one side was not seen", share=share)
+
+
 def _short(j: Judged) -> CurveWarning | None:
     graph = j.graph
     if len(graph.edges) and graph.length >= levels.SHORT * graph.radii.max():
@@ -241,5 +243,6 @@ def _thin(j: Judged) -> CurveWarning | None:
 
 
 CHECKS: tuple[Callable[[Judged], CurveWarning | None], ...] = (
-    _in_air, _outside, _loops, _open_ends, _contacts, _far, _flat, _short, _bridged, _small, _one_sided, _thin,
+    _in_air, _outside, _loops, _open_ends, _contacts, _far, _flat, _no_inside, _short, _bridged, _small, _one_sided,
+    _thin,
 )  # fmt: skip

@@ -27,6 +27,10 @@ MOSTLY = 0.5  # of the flat points: from there on it is known that they are a sh
 MOST = 0.9  # of the flat points, whose distance from their node is half a width
 LONG = 3.0  # widths that a flat body is long at least, to have a middle line [straps and flat tubes from 4; plates 2]
 TO_AND_FRO = 1.5  # extents of a flat body, from which on a curve runs along its rims rather than its middle
+TUBES = 0.75  # of the nodes on tubes that are thick, from which on a body has to have an inside
+# Spacings that points are beside the planes of the nearest ones, up to which a cloud is smooth [bundles of strands 0.14
+# to 0.46; noise that hides the inside from 0.51, which says nothing against the curve].
+ROUGH = 0.48
 SHORT = 1.0  # largest radii that a curve is long at least, to be one
 BRIDGED_SHARE = 0.2  # of the length over gaps: from there on it is more guess than curve
 LEFT_OUT_SHARE = 0.05  # of the points: from there on they are no dust

@@ -1,14 +1,16 @@
-"""How far the points of a node turn about the curve: flat places, and such as were seen from one side."""
+"""How normals and points turn: flat places, such as were seen from one side, and how rough a surface is."""
 
 import numpy as np
 
-from tiskel.arrays import Indices, Mask, Points
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
 from tiskel.geometry.curve import vertex_tangents
 from tiskel.geometry.frames import across, unit
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 
+BESIDE = 8  # nearest points whose planes say how rough a surface is
 FEWEST = 8  # points that say on which sides of a node there are some
 ONE_SIDE = np.deg2rad(200.0)  # radians without points about a node, from which on it was seen from one side
 
@@ -82,3 +84,33 @@ def one_sided_nodes(graph: CurveGraph, points: Points, node_of_point: Indices) -
     found = np.zeros(len(told), np.bool_)
     found[node[first]] = widest >= ONE_SIDE
     return found
+
+
+def roughness(points: Points, normals: Points, spacings: Numbers) -> float:
+    """Return how far points are beside the tangent planes of those nearest to them, in spacings, in the median.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        The cloud, in any unit.
+    normals : (n, 3) float64
+        Unit vectors, not oriented.
+    spacings : (n,) float64
+        How far the points are apart about each.
+
+    Returns
+    -------
+    float
+        0 on a plane, about half where noise is as large as the spacing; more it cannot be.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tiskel.methods.robust.turning import roughness
+    >>> grid = np.argwhere(np.ones((9, 9, 1)))
+    >>> roughness(grid, np.tile([0.0, 0, 1], (81, 1)), np.ones(81))
+    0.0
+    """
+    near = nearest_neighbours(np.ascontiguousarray(points, float), min(BESIDE + 1, len(points)))[0][:, 1:]
+    beside = np.einsum("nkc,nc->nk", points[near] - points[:, None], normals)
+    return float(np.median(np.sqrt((beside**2).mean(axis=1)) / np.maximum(spacings, TINY)))

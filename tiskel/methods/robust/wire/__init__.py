@@ -10,8 +10,8 @@ TEASAR, Sato et al. 2000; Verroust and Lazarus 2000):
 4. The longest way is a limb; of every next one, what stands apart from the limbs before (:mod:`.limbs`).
 5. Nodes are the means of their points; where these lie all about the limb, round cones are fitted, and the radius is
    measured, elsewhere it is a bound (:mod:`.curve`).
-6. Ends that are noise, or strands of one limb side by side, go (:mod:`.spurs`); those of noisy wires are put on the lines
-   of their limbs (:mod:`.tips`).
+6. Ends that are noise, or strands of one limb side by side, go (:mod:`.spurs`); those of noisy wires are put on the
+   lines of their limbs (:mod:`.tips`).
 7. Loops, where ends meet head on and the body is no tree (:mod:`.loops`).
 8. Where wires that are clear lines pass each other, apart, links from one to the other go, and 2 to 7 are done anew
    (:mod:`.crossings`).
