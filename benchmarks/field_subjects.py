@@ -18,6 +18,7 @@ from tiskel import CurveGraph, ShapeParams, load_cloud, make_shape
 from tiskel.gallery.families import BODIES
 from tiskel.geometry.round_cones import ConeGraph
 from tiskel.geometry.spacing import spacing_of
+from tiskel.metrics.matching import stub_ends
 
 HERE = Path(__file__).parent
 SHARED = HERE / ".." / ".." / "shared"
@@ -201,4 +202,6 @@ def swc(path: Path) -> CurveGraph | None:
 
 
 def counts(shape: CurveGraph) -> Counts:
-    return shape.components, shape.loops, shape.ends
+    """Return the counts of a shape; stubs, no longer than the radius at their joint, may be missing, as in trees."""
+    stubs = len(stub_ends(shape, 0.0))
+    return shape.components, shape.loops, tuple(range(shape.ends - stubs, shape.ends + 1))

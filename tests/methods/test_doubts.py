@@ -225,6 +225,12 @@ def test_a_long_flat_bar_is_a_note_and_a_plate_a_warning() -> None:
         assert {one.code: one.severity for one in (*s.warnings, *s.notes)}["flat"] == severity
 
 
+def test_a_flat_ring_is_a_note_and_one_that_ends_stick_out_of_a_warning() -> None:
+    made = extract_skeleton(contract(make_shape(named_shape("band"), ShapeParams(count=16384))[0]))
+    assert (made.ends, made.loops) == (0, 1)
+    assert [(doubt.code, doubt.severity) for doubt in (*made.warnings, *made.notes)] == [("flat", "note")]
+
+
 def test_strands_taken_for_one_tube_have_no_inside_and_noise_alone_is_not_told() -> None:
     bundle = extract_skeleton(contract(make_shape(named_shape("bundle"))[0]))
     assert [warning.code for warning in bundle.warnings] == ["no-inside"]

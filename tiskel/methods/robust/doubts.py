@@ -179,7 +179,9 @@ def _flat(j: Judged) -> CurveWarning | None:
     sheet = bool((j.graph.regimes[node] == Regime.SHEET).mean() > levels.MOSTLY)
     half = float(np.quantile(np.linalg.norm(j.points[flat] - j.graph.nodes[node], axis=1), levels.MOST))
     extent = diagonal(j.points)
-    middle = j.solid.trusted and levels.LONG * 2 * half < extent and j.graph.length < levels.TO_AND_FRO * extent
+    rings = 0 if j.graph.ends else j.graph.loops  # it is longer about each; where ends stick out of them, it strays
+    straight = j.graph.length < levels.TO_AND_FRO * extent * (1 + rings)
+    middle = j.solid.trusted and levels.LONG * 2 * half < extent and straight
     text = "{share} of the points lie where the body is flat: " + (
         "the curve is the middle of a sheet there" if sheet else "a curve says little about it there"
     )
