@@ -142,7 +142,9 @@ def no_thinner(truth: CurveGraph, spacing: float) -> CurveGraph:
 
 
 def reach(curve: CurveGraph, truth: CurveGraph, cloud: np.ndarray) -> Row:
-    """Return the share of the curve near the middle of what was seen, or near the truth, and the share said to be so.
+    """Return the share of the curve near the middle of what was seen, or near the truth, and with it what is told.
+
+    Of sheets and bridges the curve itself says that they are beside the body's middle, or not measured.
 
     The middle of what was seen at a place of the truth is the mean of the points that are nearest to it.
     """
@@ -157,7 +159,7 @@ def reach(curve: CurveGraph, truth: CurveGraph, cloud: np.ndarray) -> Row:
     samples = curve_samples(curve, PLACES)
     apart, nearest = cKDTree(places).query(samples.points)
     near = apart <= HALF * radii[nearest]
-    said = (curve.regimes == Regime.SHEET)[curve.edges[samples.edges]].any(axis=1)
+    said = (curve.regimes == Regime.SHEET)[curve.edges[samples.edges]].any(axis=1) | curve.bridged[samples.edges]
     return {
         "reached": by_length(curve, samples.edges, near),
         "reached_or_said": by_length(curve, samples.edges, near | said),
