@@ -107,12 +107,13 @@ def _best(network: Network, trace: Trace, params: RobustParams, span: Span) -> C
     if flat_share(best) > FLAT:  # what encloses nothing has no inside to judge a curve by, though perhaps limbs
         inner = body_curve(network, solid, params) if solid.oriented.consistency > NEARLY_CLOSED else None
         return inner if inner is not None and inner.curve.ends > best.curve.ends and _alike(inner, best) else best
-    if best.misfit + best.off_middle >= BULKY:
+    crown = best.curve.ends >= CROWN  # neither the inside nor another front of one was ever better
+    if not crown and best.misfit + best.off_middle >= BULKY:
         inner = body_curve(network, solid, params)
         if inner is not None and _alike(inner, best) and _clearly(inner, best) and not _in_mouths(inner, best):
             best = inner
     for number in range(1, params.extra_fronts + 1):
-        if best.misfit < number * DOUBTFUL or best.curve.ends >= CROWN:  # no other front of a crown was ever better
+        if crown or best.misfit < number * DOUBTFUL:
             break
         span.at(0.6 + 0.4 * (number - 1) / params.extra_fronts, f"further front {number}")
         sections = further_front(network, contracted, params, number)
