@@ -321,7 +321,8 @@ def test_strands_of_a_limb_go_and_twigs_that_part_stay(away: float, slope: float
         nodes=nodes, edges=edges, radii=np.full(count, 0.1), levels=np.zeros(count, np.int32),
         node_of_section=np.append(np.arange(count), -1).astype(np.int32), section_sizes=np.ones(count),
     )  # fmt: skip
-    assert without_spurs(curve, 1.0, 0.0).ends == ends
+    assert without_spurs(curve, 1.0, 2.0, 3.0).ends == ends
+    assert without_spurs(curve, 1.0, 1.9, 3.0).ends == 3  # threads side by side
 
 
 def zigzagging(noise: float, regime: Regime) -> ConeCurve:

@@ -73,6 +73,6 @@ def _curve(
         levels = levels_of(points, links, routes, BRIDGE, THREADS, tubes)
         limbs = limbs_of(levels, links.spacing)
     curve, sections = curve_of(points, links.spacing, levels, limbs, params)
-    curve = on_their_lines(without_spurs(curve, links.spacing, crowd if crowd >= FEW else 0.0))
+    curve = on_their_lines(without_spurs(curve, links.spacing, crowd, FEW))
     curve, left = with_loops(curve, sections, links, params.topology, network.linear_share > CLEAR)
     return curve, sections, left

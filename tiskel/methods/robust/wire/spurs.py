@@ -12,18 +12,22 @@ SPARSE = 2.0  # standard deviations, of the number of points that its length has
 SHORT = 6.0  # spacings: longer ones are no noise, however few their points are
 # Strands of one limb run beside each other, twigs part.
 STRANDS = 3.0  # spacings from strand to strand at most
+CROWDED = (
+    2.0  # points to a spacing of length, from which on limbs may be strands [threads 1.3 to 1.9, uneven tubes 2.0 up]
+)
 PARTS = 0.4  # of its length that the end of a twig is from all other limbs, at least
 
 
-def without_spurs(curve: ConeCurve, spacing: float, crowding: float) -> ConeCurve:
+def without_spurs(curve: ConeCurve, spacing: float, crowding: float, few: float = 0.0) -> ConeCurve:
     """Contract the end branches that are noise, the shortest of each joint first.
 
     They are short against the radius of their joint, or stay within so much of
-    the limbs beside them. Where limbs have crowding points to a spacing of their
-    length, so do their ends: a short branch of few points is noise, too. Limbs
-    that are threads have ends of one or two points, and a crowding of 0 is for
-    them.
+    the limbs beside them, or are strands. Where limbs have crowding points to a
+    spacing of their length, so do their ends: a short branch of few points is
+    noise, too; of a crowding below few, ends have one or two points, and are
+    not asked for more.
     """
+    strand = STRANDS * spacing if crowding >= CROWDED else 0.0
     while True:
         shortest: dict[int, tuple[float, int]] = {}
         paths = curve.paths_from(ends=True)
@@ -32,10 +36,10 @@ def without_spurs(curve: ConeCurve, spacing: float, crowding: float) -> ConeCurv
             joint = int(path[-1])
             if curve.degrees[joint] > 2:
                 length = float(np.linalg.norm(np.diff(curve.nodes[path], axis=0), axis=1).sum())
-                expected = crowding * length / spacing
-                few = float(points[path[:-1]].sum()) < expected - SPARSE * np.sqrt(expected)
-                least = max(SPUR * float(curve.radii[joint]), SHORT * spacing if few else 0.0)
-                if length < least or _beside(curve, tree, path, STRANDS * spacing, PARTS * length):
+                expected = crowding * length / spacing if crowding >= few else 0.0
+                noise = float(points[path[:-1]].sum()) < expected - SPARSE * np.sqrt(expected)
+                least = max(SPUR * float(curve.radii[joint]), SHORT * spacing if noise else 0.0)
+                if length < least or _beside(curve, tree, path, strand, PARTS * length):
                     shortest[joint] = min(shortest.get(joint, (np.inf, 0)), (length, number))
         if not shortest:
             return curve
