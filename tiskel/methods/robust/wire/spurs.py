@@ -12,9 +12,7 @@ SPARSE = 2.0  # standard deviations, of the number of points that its length has
 SHORT = 6.0  # spacings: longer ones are no noise, however few their points are
 # Strands of one limb run beside each other, twigs part.
 STRANDS = 3.0  # spacings from strand to strand at most
-CROWDED = (
-    2.0  # points to a spacing of length, from which on limbs may be strands [threads 1.3 to 1.9, uneven tubes 2.0 up]
-)
+CROWDED = 2.0  # points to a spacing of length, from which on limbs may be strands [threads 1.3 to 1.9, tubes from 2.0]
 PARTS = 0.4  # of its length that the end of a twig is from all other limbs, at least
 
 

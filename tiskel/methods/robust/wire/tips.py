@@ -9,7 +9,7 @@ from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.regime import Regime
 from tiskel.methods.robust.curve import ConeCurve
 
-# Found by trial on generated trees, forty of each setting.
+# Found by trial on generated trees, spreading ones and neurons, clean, noisy and uneven.
 ZIGZAG = 0.15  # median distance of a node from the line between those beside it, in their distance, that is noise
 ROUNDS = 3  # in which nodes go halfway to the mean of those beside them, to find the line of their limb
 STRAIGHT = 5  # nodes from an end on that make its line [to move these nodes as well cuts corners: F -0.015]
