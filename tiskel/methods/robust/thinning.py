@@ -20,6 +20,7 @@ from tiskel.geometry.cells import numbered
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.spacing import SAMPLED, spacing_of
+from tiskel.methods.robust.axes import sums
 from tiskel.methods.robust.network import own_axes
 from tiskel.methods.trace import Trace
 from tiskel.params import MaxPoints
@@ -146,7 +147,7 @@ def _means(points: Points, own: Points, place: Indices) -> Thinned:
 
 def _averaged(points: Points, place: Indices, count: int) -> Points:
     each = np.bincount(place, minlength=count)[:, None]
-    return np.asarray(np.stack([np.bincount(place, x, minlength=count) for x in points.T], axis=1) / each)
+    return np.asarray(sums(points, place, count) / each)
 
 
 def _sizes(points: Points) -> tuple[Table, Table, Lists]:
@@ -158,18 +159,18 @@ def _sizes(points: Points) -> tuple[Table, Table, Lists]:
     """
     side = FINEST * spacing_of(points, most=SAMPLED)
     corner = np.floor((points - points.min(axis=0)) / side).astype(np.int64)
-    sums = np.concatenate([np.ones((len(points), 1)), points, _products(points)], axis=1)
+    totals = np.concatenate([np.ones((len(points), 1)), points, _products(points)], axis=1)
     cell: Indices = np.arange(len(points), dtype=np.int32)
     ratios, cells, many = list[Numbers](), [cell], list[Numbers]()
     for number in range(SIZES):
         corner, into = numbered(corner)
         if len(corner) < FEWEST and number:
             break
-        sums = np.stack([np.bincount(into, x, minlength=len(corner)) for x in sums.T], axis=1)
+        totals = sums(totals, into, len(corner))
         cell = into[cell]
         around = min(AROUND, len(corner))
-        nearest = nearest_neighbours(np.ascontiguousarray(sums[:, 1:4] / sums[:, :1]), around)[0]
-        flatness, inside = _flatness(_variances(sums, nearest), nearest), sums[nearest, 0].sum(axis=1)
+        nearest = nearest_neighbours(np.ascontiguousarray(totals[:, 1:4] / totals[:, :1]), around)[0]
+        flatness, inside = _flatness(_variances(totals, nearest), nearest), totals[nearest, 0].sum(axis=1)
         if number == 0:
             ratios, many = [_alone(points, cell, flatness, nearest)], [np.where(flatness > FLAT, AROUND, inside)[cell]]
         ratios.append(flatness[cell])
@@ -201,11 +202,11 @@ def _products(points: Points) -> Table:
     return np.asarray((points[:, :, None] * points[:, None, :]).reshape(-1, 9))
 
 
-def _variances(sums: Table, nearest: Lists) -> Table:
-    """Return (m, 3) the descending variances of all points in the cells (m, k) about each; sums (m, 13) are theirs."""
+def _variances(totals: Table, nearest: Lists) -> Table:
+    """Return (m, 3) the descending variances of all points in the cells (m, k) about each; totals (m, 13) of each."""
     found = []
     for start in range(0, len(nearest), CHUNK):
-        total = sums[nearest[start : start + CHUNK]].sum(axis=1)
+        total = totals[nearest[start : start + CHUNK]].sum(axis=1)
         mean = total[:, 1:] / total[:, :1]
         found.append(np.linalg.eigvalsh((mean[:, 3:] - _products(mean[:, :3])).reshape(-1, 3, 3))[:, ::-1])
     return np.asarray(np.maximum(np.concatenate(found), 0))

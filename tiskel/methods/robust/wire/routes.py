@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices, Mask, Numbers, Points
 from tiskel.geometry.cells import numbered
+from tiskel.methods.robust.axes import sums
 from tiskel.methods.robust.wire.links import Links
 
 # Found by trial on generated trees; 1.5 to 3 all work, 1 cuts corners.
@@ -101,9 +102,9 @@ def _crowds(points: Points, part: Indices, reach: float) -> Indices:
 
 def _one_of_each(points: Points, group: npt.NDArray[np.int64]) -> Indices:
     """Return of every group the point (g,) that is nearest to the mean of all of it, whatever their order."""
-    number = np.unique(group, return_inverse=True)[1].ravel()
+    number = np.unique(group, return_inverse=True)[1].ravel().astype(np.int32)
     sizes = np.bincount(number)
-    means = np.stack([np.bincount(number, axis) for axis in points.T], axis=1) / sizes[:, None]
+    means = sums(points, number, len(sizes)) / sizes[:, None]
     away = ((points - means[number]) ** 2).sum(axis=1)
     order = np.lexsort((*points.T, away, number))
     return order[np.searchsorted(number[order], np.arange(len(sizes)))].astype(np.int32)

@@ -7,6 +7,7 @@ import numpy as np
 from tiskel.arrays import TINY, Mask, Points
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.regime import Regime
+from tiskel.methods.robust.axes import sums
 from tiskel.methods.robust.curve import ConeCurve
 
 # Found by trial on generated trees, spreading ones and neurons, clean, noisy and uneven.
@@ -47,6 +48,6 @@ def _evened(curve: ConeCurve, moved: Mask) -> Points:
     first, second = curve.edges.T
     nodes, count, rows = curve.nodes.copy(), len(curve.nodes), np.flatnonzero(moved)
     for _ in range(ROUNDS):
-        beside = [np.bincount(first, x[second], count) + np.bincount(second, x[first], count) for x in nodes.T]
-        nodes[rows] = (nodes[rows] + np.stack(beside, axis=1)[rows] / curve.degrees[rows, None]) / 2
+        beside = sums(nodes[second], first, count) + sums(nodes[first], second, count)
+        nodes[rows] = (nodes[rows] + beside[rows] / curve.degrees[rows, None]) / 2
     return np.asarray(nodes)
