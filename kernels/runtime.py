@@ -25,10 +25,10 @@ from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
 from .errors import TiskelError
 from .folders import make_cache_folder, somewhere
+from .running import started_in
 from .threads import requested_threads
 
 _lock = threading.RLock()
-_started_in: list[int] = []
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 if hasattr(os, "register_at_fork"):  # a child must not inherit the lock of a thread that it does not inherit
@@ -44,9 +44,9 @@ def ensure() -> None:
         In a process forked after the start, where Taichi would hang, and where TISKEL_NUM_THREADS is wrong.
     """
     with _lock:
-        if not _started_in:
+        if not started_in:
             _start()
-        elif _started_in[0] != os.getpid():
+        elif started_in[0] != os.getpid():
             raise TiskelError(
                 "kernels do not survive a fork, and this process was forked after the first of them ran; "
                 "start workers with multiprocessing.get_context('spawn') or 'forkserver'"
@@ -85,7 +85,7 @@ def _start() -> None:
                 "(ulimit -v), 3 GB or more"
             ) from None
     impl.get_runtime().materialize()  # only this thread can, and its kernel may fail before it would
-    _started_in.append(os.getpid())
+    started_in.append(os.getpid())
 
 
 def _lay_out_faster() -> None:

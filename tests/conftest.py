@@ -18,6 +18,15 @@ REFERENCE = Path(os.environ.get("TISKEL_REFERENCE", SHARED / "reference"))
 CASES = Path(os.environ.get("TISKEL_CASES", SHARED / "cases"))
 
 
+@pytest.fixture(autouse=True)
+def _kernels_run_where_they_are_tested(request: pytest.FixtureRequest) -> None:
+    """Start Taichi for tests of kernels: until it runs, NumPy does their work on small clouds."""
+    if request.path.parent.name == "kernels":
+        from tiskel.kernels import runtime
+
+        runtime.ensure()
+
+
 @pytest.fixture(scope="session")
 def reference_folder() -> Path:
     if not (REFERENCE / "clouds").is_dir():

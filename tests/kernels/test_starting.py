@@ -55,7 +55,7 @@ def test_a_process_that_is_in_no_group_of_the_second_version_has_the_quota_of_th
 
 def test_kernels_do_not_start_in_a_forked_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the child of a fork finds: they were started by a process of another number."""
-    monkeypatch.setattr(runtime, "_started_in", [os.getppid()])
+    monkeypatch.setattr(runtime, "started_in", [os.getppid()])
     monkeypatch.setattr(runtime, "_start", lambda: pytest.fail("started again"))
     with pytest.raises(TiskelError, match="do not survive a fork"):
         runtime.ensure()

@@ -10,8 +10,7 @@ from tiskel import RobustParams, ShapeParams, TiskelError, contract, extract_ske
 from tiskel.arrays import Points
 from tiskel.gallery.trees import thickened, tree
 from tiskel.geometry.solid import solid_of
-from tiskel.methods import robust
-from tiskel.methods.robust import treelike
+from tiskel.methods.robust import extraction, treelike
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.network import prepared
 from tiskel.methods.robust.pipeline import fitted_curve
@@ -65,8 +64,8 @@ def test_a_crown_gets_no_further_fronts(monkeypatch: pytest.MonkeyPatch) -> None
         asked.append("another front")
         raise TiskelError("a front too many")
 
-    monkeypatch.setattr(robust, "DOUBTFUL", -1.0)  # every curve is in doubt
-    monkeypatch.setattr(robust, "further_front", further)
+    monkeypatch.setattr(extraction, "DOUBTFUL", -1.0)  # every curve is in doubt
+    monkeypatch.setattr(extraction, "further_front", further)
     crown = make_shape(shape_graph("tree"), ShapeParams())[0]
     assert extract_skeleton(contract(crown)).ends > CROWN
     assert not asked

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Indices, Lists, Numbers, Points, Stack, Table
+from tiskel.geometry import numpy_kernels
 from tiskel.geometry.rings import Rings
 
 ALONE = 8192  # points that one thread halves by itself, in a millisecond: as long as a few calls of a kernel
@@ -29,6 +30,8 @@ def nearest_neighbours(points: Points, k: int) -> tuple[Lists, Table]:
     squares : (n, k) float64
         Squared distances to them, in the squared unit.
     """
+    if numpy_kernels.instead(len(points)) and (found := numpy_kernels.nearest(points, k)) is not None:
+        return found
     from tiskel.kernels import neighbours as kernel
 
     tree = _tree(points)
@@ -129,6 +132,8 @@ def principal_axes(points: Points, neighbours: Lists) -> tuple[Table, Axes]:
     axes : (m, 3, 3) float64
         Unit eigenvectors as rows, in the same order; their signs mean nothing.
     """
+    if numpy_kernels.instead(max(len(points), len(neighbours))):
+        return numpy_kernels.principal_axes(points, neighbours)
     from tiskel.kernels import axes as kernel
 
     values = np.empty((len(neighbours), 3))

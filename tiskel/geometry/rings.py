@@ -6,6 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from tiskel.arrays import Indices, Lists, Masks, Numbers, Points
+from tiskel.geometry import numpy_kernels
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +55,8 @@ def smallest_distances(points: Points, rings: Rings) -> Numbers:
     (n,) float64
         In the unit of the points; 0 for an empty ring.
     """
+    if numpy_kernels.instead(len(points)):
+        return numpy_kernels.smallest_distances(points, rings.members, rings.sizes)
     from tiskel.kernels import laplacian as kernel
 
     out = np.empty(len(points))
