@@ -57,6 +57,13 @@ def test_points_of_tubes_lie_on_them_and_no_twig_of_a_crown_does() -> None:
     assert (on_sure_tubes(tubes_of(crown)) == -1).all()
 
 
+def test_a_crown_whose_noise_fills_it_is_no_limb_though_its_points_lie_about_an_axis() -> None:
+    shrub = thickened(tree("shrub", tips=300, seed=2), 5000, 0.24)
+    crown = tubes_of(make_shape(shrub, ShapeParams(count=5000, noise=3.5, seed=1))[0])
+    assert np.median(crown.fit.radii) > 4 * crown.network.spacing
+    assert (on_sure_tubes(crown) == -1).all()
+
+
 def test_a_crown_gets_no_further_fronts(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
 

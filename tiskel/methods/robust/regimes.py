@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tiskel.arrays import Indices, Numbers
+from tiskel.geometry.frames import unit
 from tiskel.geometry.regime import Regime
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.checks import FAR, Candidate
@@ -37,6 +38,10 @@ BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
 # trees 0.04 to 0.15 and 0.44 up; what fronts make of noisy twigs 0.07 to 0.25 and 0.12 to 0.6].
 WIDE = 2.0  # spacings in its radius, at least
 SHARP = 0.125  # root mean square of the distances of its points from it, in radii, at most
+OUTWARD = (
+    0.5  # mean squared cosine of normals and ways from the axis, at least; a third where they look anywhere [limbs
+)
+# of scans and of trees as noisy as their points are apart from 0.63, noisy crowns taken for limbs to 0.49]
 COVERED = 0.4  # share of its surface with points, at least
 MANY = 0.2  # share of points on such limbs from which on there are some [scans 0.34 up, noisy twigs to 0.10]
 SHORTEST = 0.5  # radii in the length of an edge, when its surface is asked for: shorter ones have the points of a ball
@@ -78,12 +83,15 @@ def _on_tubes(tubes: Candidate, sharp: float, covered: float) -> Indices:
     fit, curve = tubes.fit, tubes.curve
     many = np.maximum(np.bincount(fit.edge, minlength=len(curve.edges)), 1)
     spacings = tubes.network.spacings[fit.rows]
-    spacing, radius, spread = (
+    away = unit(tubes.network.points[fit.rows] - fit.places)
+    outward = np.einsum("ij,ij->i", away, tubes.network.normals[fit.rows])
+    spacing, radius, spread, outward = (
         np.bincount(fit.edge, values, minlength=len(curve.edges)) / many
-        for values in (spacings, fit.radii, fit.residual**2)
+        for values in (spacings, fit.radii, fit.residual**2, outward**2)
     )
     area = 2 * np.pi * radius * np.maximum(curve.lengths, SHORTEST * radius)
-    good = (radius > WIDE * spacing) & (np.sqrt(spread) < sharp * radius) & (many * spacing**2 > covered * area)
+    good = (radius > WIDE * spacing) & (many * spacing**2 > covered * area)
+    good &= (np.sqrt(spread) < sharp * radius) & (outward > OUTWARD)
     node = np.full(len(tubes.network.points), -1, np.int32)
     on = good[fit.edge] & (fit.residual < np.maximum(fit.radii, spacings))
     node[fit.rows[on]] = fit.nodes[on]
