@@ -82,11 +82,11 @@ $(TOOLS)/.installed:
 	$(TOOLS)/bin/python -m pip install --quiet build twine pip-audit cyclonedx-bom
 	touch $@
 
-# What a user needs; what tests and checks need comes on top, and is four times as large.
+# What a user needs, pictures included; what tests and checks need comes on top, and is four times as large.
 $(RUNS): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
+	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[full]'
 	touch $@
 
 $(INSTALLED): $(RUNS)
