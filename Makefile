@@ -7,7 +7,7 @@ RUNS := $(VENV)/.runs
 INSTALLED := $(VENV)/.installed
 TOOLS := $(VENV)-tools
 
-.PHONY: help demo test debug coverage check format data docs dissertation dist audit sbom clean
+.PHONY: help demo test test-commands test-library debug coverage check format data docs dissertation dist audit sbom clean
 
 help:
 	@echo "make demo    skeleton of a sample cloud: files and a picture in out/demo"
@@ -31,6 +31,15 @@ demo: $(RUNS)
 
 test: $(INSTALLED)
 	$(BIN)/pytest -q
+
+# The same in two parts, to be run side by side: make -j2 test-commands test-library
+COMMANDS := tests/cli tests/batch tests/docs tests/scripts tests/fuzz tests/test_types.py
+
+test-commands: $(INSTALLED)
+	$(BIN)/pytest -q -p no:cacheprovider $(COMMANDS)
+
+test-library: $(INSTALLED)
+	$(BIN)/pytest -q -p no:cacheprovider $(addprefix --ignore=,$(COMMANDS))
 
 debug: $(INSTALLED)
 	TI_DEBUG=1 TI_OFFLINE_CACHE=0 $(BIN)/pytest -q tests/kernels tests/geometry tests/preprocess tests/methods tests/metrics tests/slicing tests/pipeline/test_stages.py

@@ -82,6 +82,22 @@ def test_after_a_stop_no_other_cloud_is_begun() -> None:
     assert begun == ["a"]
 
 
+def test_a_signal_between_the_starts_of_two_jobs_stops_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[str] = []
+
+    def settle(task: Task, tell: Any) -> Settled:
+        pool.supervisor.stop.wait(10)
+        done.append(task.name)
+        return Settled(task, "done", {})
+
+    pool = pool_of(settle, "a", "b", "c", jobs=2)
+    monkeypatch.setattr(pool._jobs[1], "start", lambda: (_ for _ in ()).throw(SystemExit(143)))
+    with pytest.raises(SystemExit):
+        list(pool.news())
+    assert done == ["a"]
+    assert pool.supervisor.ended == ["child"]  # type: ignore[attr-defined]
+
+
 def test_a_line_that_a_full_disk_cut_short_is_an_error_and_the_next_one_is_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

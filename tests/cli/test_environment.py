@@ -92,7 +92,7 @@ def test_kernels_start_where_the_working_folder_is_gone(cloud: Path, tmp_path: P
 @pytest.mark.parametrize("kilobytes", [200_000, 1_000_000])
 def test_too_little_memory_is_one_line(kilobytes: int, cloud: Path, tmp_path: Path) -> None:
     done = subprocess.run(
-        [PROGRAM, "contract", cloud, "-o", "c.ply"], cwd=tmp_path, capture_output=True, check=False,
+        [PROGRAM, "skeleton", cloud, "-o", "c.ply"], cwd=tmp_path, capture_output=True, check=False,
         preexec_fn=limited(kilobytes),
     )  # fmt: skip
     assert done.returncode == 1
@@ -100,6 +100,14 @@ def test_too_little_memory_is_one_line(kilobytes: int, cloud: Path, tmp_path: Pa
     assert last.startswith("error: ")
     assert "ulimit -v" in last
     assert not (tmp_path / "c.ply").exists()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
+def test_a_small_cloud_is_contracted_in_memory_that_kernels_could_not_start_in(cloud: Path, tmp_path: Path) -> None:
+    words = [str(PROGRAM), "contract", str(cloud), "-o", "c.ply"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, check=False, preexec_fn=limited(1_000_000))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "c.ply").exists()
 
 
 def limited(kilobytes: int) -> Callable[[], None]:

@@ -43,15 +43,16 @@ class Pool:
 
     def news(self) -> Generator[News, None, None]:
         """Yield what becomes of every cloud as it happens, and None now and then; the jobs end with it."""
-        for job in self._jobs:
-            job.start()
-        try:
+        try:  # also about the starts: a signal may come between two of them
+            for job in self._jobs:
+                job.start()
             while self._count:
                 yield self._next()
         finally:
             self.supervisor.stop.set()
             for job in self._jobs:
-                job.join(JOIN)
+                if job.ident is not None:
+                    job.join(JOIN)
 
     def _next(self) -> News:
         try:

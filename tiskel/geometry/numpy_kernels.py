@@ -9,6 +9,7 @@ import numpy as np
 
 from tiskel.arrays import Indices, Lists, Numbers, Points, Stack, Table
 from tiskel.kernels.running import running
+from tiskel.kernels.threads import requested_threads
 
 MOST = 20_000  # points, for which all three take 0.2 s together; Taichi takes 0.6 s to start [measured, two cores]
 SWEEPS = 8  # of cyclic Jacobi, as many as the kernel's
@@ -18,7 +19,11 @@ SCRATCH = 4_000_000  # numbers: where ties need more than so many, the kernel is
 
 
 def instead(count: int) -> bool:
-    """Return whether so many points are to be done here: they are few, and no kernel has run yet."""
+    """Return whether so many points are to be done here: they are few, and no kernel has run yet.
+
+    Raises TiskelError where a kernel would not start: TISKEL_NUM_THREADS is wrong.
+    """
+    requested_threads()
     return count <= MOST and not running()
 
 

@@ -14,6 +14,7 @@ from tiskel.methods.robust.wire.levels import Levels
 
 # Found by trial on generated trees.
 LEAST = 1.0  # spacings that a limb stands apart at least: less finds no more tips, more misses some
+DIGITS = 6  # of lengths in spacings that count: of ways as long as each other rounding must not say which is longer
 BESIDE = 0.4  # share of what is left of a way that runs beside earlier limbs, from where on it is theirs
 
 
@@ -44,7 +45,7 @@ def limbs_of(levels: Levels, spacing: float) -> Limbs:
     step = np.linalg.norm(levels.centres - levels.centres[levels.parents], axis=1) / spacing
     edges: list[tuple[int, int]] = []
     bridged: list[bool] = []
-    for tip in np.argsort(-levels.tops, kind="stable").tolist():
+    for tip in _longest_first(levels, spacing).tolist():
         if owner[tip] >= 0:
             continue
         way = [tip]
@@ -66,6 +67,12 @@ def limbs_of(levels: Levels, spacing: float) -> Limbs:
             last = neighbour if neighbour >= 0 else last
             owner[section] = last
     return Limbs(np.array(edges, np.int32).reshape(-1, 2), np.array(bridged, bool), owner)
+
+
+def _longest_first(levels: Levels, spacing: float) -> Indices:
+    """Return the sections by the length of their ways; of ways as long as each other those further out first."""
+    out = np.linalg.norm(levels.centres - levels.centres.mean(axis=0), axis=1) / spacing
+    return np.lexsort((-np.round(out, DIGITS), -np.round(levels.tops, DIGITS))).astype(np.int32)
 
 
 def crowding(levels: Levels, limbs: Limbs, spacing: float) -> float:
