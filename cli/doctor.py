@@ -61,6 +61,9 @@ def _kernels() -> list[tuple[str, str, bool]]:
     from tiskel.kernels import folders, threads
 
     try:
+        from tiskel.kernels import runtime
+
+        runtime.ensure()  # so few points would do without
         left = len(contract(make_shape(shape_graph("capsule"), ShapeParams(count=200))[0]).points)
         state = (f"run on {threads.requested_threads()} threads; 200 points contracted to {left}", True)
     except Exception as error:

@@ -84,7 +84,7 @@ def test_a_working_folder_that_is_gone(points: Path, tmp_path: Path) -> None:
 
 
 def test_kernels_start_where_the_working_folder_is_gone(cloud: Path, tmp_path: Path) -> None:
-    done = shell(f"mkdir gone; cd gone; rmdir ../gone; $T contract -q {cloud} -o {tmp_path}/c.ply", tmp_path)
+    done = shell(f"mkdir gone; cd gone; rmdir ../gone; $T skeleton -q {cloud} -o {tmp_path}/c.ply", tmp_path)
     assert done.returncode == 0, done.stderr
 
 

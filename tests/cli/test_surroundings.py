@@ -70,7 +70,7 @@ def test_two_processes_start_cold_at_once_and_the_cache_location_is_kept(tmp_pat
     environment = {**os.environ, "TI_OFFLINE_CACHE_FILE_PATH": str(cache), "HOME": str(tmp_path / "home")}
     started = [
         subprocess.Popen(
-            [PROGRAM, "contract", "y.ply", "-o", f"{i}.ply"], cwd=tmp_path, env=environment, stderr=subprocess.PIPE
+            [PROGRAM, "skeleton", "y.ply", "-o", f"{i}.ply"], cwd=tmp_path, env=environment, stderr=subprocess.PIPE
         )
         for i in range(2)
     ]
@@ -100,8 +100,8 @@ def body(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def contracted(body: Path, tmp_path: Path, **changes: str | None) -> bytes:
-    """Contract a cloud in changed surroundings; return standard output, having checked that nothing is left behind."""
+def skeleton_of(body: Path, tmp_path: Path, **changes: str | None) -> bytes:
+    """Find a skeleton in changed surroundings; return standard output, having checked that nothing is left behind."""
     (tmp_path / "file").write_text("")
     (tmp_path / "temporary").mkdir()
     environment = {**os.environ, "MPLCONFIGDIR": str(tmp_path), "TMPDIR": str(tmp_path / "temporary")}
@@ -109,7 +109,7 @@ def contracted(body: Path, tmp_path: Path, **changes: str | None) -> bytes:
         environment.pop(name, None)
         if value is not None:
             environment[name] = value.replace("FILE", str(tmp_path / "file"))
-    done = subprocess.run([PROGRAM, "contract", body], env=environment, capture_output=True, check=False, timeout=240)
+    done = subprocess.run([PROGRAM, "skeleton", body], env=environment, capture_output=True, check=False, timeout=240)
     assert done.returncode == 0, done.stderr.decode()
     assert b"error" not in done.stderr
     assert list((tmp_path / "temporary").iterdir()) == []
@@ -118,7 +118,7 @@ def contracted(body: Path, tmp_path: Path, **changes: str | None) -> bytes:
 
 @pytest.mark.parametrize("name", SURROUNDINGS)
 def test_folders_that_cannot_be_made_are_no_obstacle(name: str, body: Path, tmp_path: Path) -> None:
-    assert contracted(body, tmp_path, **SURROUNDINGS[name]).startswith(b"ply")
+    assert skeleton_of(body, tmp_path, **SURROUNDINGS[name]).startswith(b"ply")
 
 
 def test_a_user_without_a_home_whom_the_system_does_not_know(body: Path, tmp_path: Path) -> None:
@@ -127,13 +127,13 @@ def test_a_user_without_a_home_whom_the_system_does_not_know(body: Path, tmp_pat
     (tmp_path / "early" / "sitecustomize.py").write_text(
         "import pwd\ndef getpwuid(uid):\n    raise KeyError(uid)\npwd.getpwuid = getpwuid\n"
     )
-    stage = contracted(body, tmp_path, HOME=None, XDG_CACHE_HOME=None, PYTHONPATH=ahead(tmp_path / "early"))
+    stage = skeleton_of(body, tmp_path, HOME=None, XDG_CACHE_HOME=None, PYTHONPATH=ahead(tmp_path / "early"))
     assert stage.startswith(b"ply")
 
 
 def test_an_empty_cache_home_is_none(body: Path, tmp_path: Path) -> None:
     """Taichi would take it for the root folder."""
-    contracted(body, tmp_path, HOME=str(tmp_path), XDG_CACHE_HOME="")
+    skeleton_of(body, tmp_path, HOME=str(tmp_path), XDG_CACHE_HOME="")
     assert any((tmp_path / ".cache" / "taichi").iterdir())
 
 

@@ -82,6 +82,8 @@ def test_bytes_are_the_same_on_one_thread_and_two() -> None:
     script = """
 import hashlib, numpy as np
 from tiskel.geometry.neighbours import nearest_neighbours
+from tiskel.kernels import runtime
+runtime.ensure()
 points = np.round(np.random.default_rng(3).random((20000, 3)), 2)  # with many ties
 print(*(hashlib.sha256(array.tobytes()).hexdigest() for array in nearest_neighbours(points, 14)))
 """
