@@ -10,7 +10,8 @@ from typing import Any, NamedTuple, get_args
 
 SHARED = 5  #: commands that have an option in the same words, from which on it is described once for all
 HELP = ["--help", "-h"]
-VALUES = {int: "N", float: "X", Path: "FILE"}
+VALUES = {int: "N", float: "X", Path: "FILE"}  # by annotation, as Typer names it from 0.29 on
+KINDS = {"integer": "N", "float": "X", "path": "FILE"}  # by the first word of Click's type, as it does before
 
 
 class Parameter(NamedTuple):
@@ -33,15 +34,18 @@ def _parameter(one: Any) -> Parameter:
     argument = one.param_type_name == "argument"
     names = (one.metavar or one.name.upper()) if argument else ", ".join([*one.opts, *one.secondary_opts])
     flag = argument or one.is_flag
-    value = "" if flag else one.metavar or _kind(one.type_descriptor.annotation)
+    value = "" if flag else one.metavar or _kind(one)
     default = "" if flag or one.default in (None, "", ()) or not one.show_default else _said(one.default)
     words = " ".join((one.help or "").split()) + (f" Default: {default}." if default else "")
     return Parameter(names, value, "Arguments" if argument else one.rich_help_panel or "Options", words)
 
 
-def _kind(annotation: Any) -> str:
+def _kind(one: Any) -> str:
     """Return what stands for a value that has no name of its own: its choices, or a letter for its type."""
-    return "|".join(map(str, get_args(annotation))) or VALUES.get(annotation, "TEXT")
+    if hasattr(one, "type_descriptor"):
+        annotation = one.type_descriptor.annotation
+        return "|".join(map(str, get_args(annotation))) or VALUES.get(annotation, "TEXT")
+    return "|".join(getattr(one.type, "choices", ())) or KINDS.get(one.type.name.split()[0], "TEXT")
 
 
 def _said(value: Any) -> str:
