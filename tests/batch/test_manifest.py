@@ -181,6 +181,7 @@ def test_a_file_system_without_links_has_leases_too(tmp_path: Path, monkeypatch:
 def test_a_lease_that_was_never_written_to_its_end_is_respected_while_it_is_young(tmp_path: Path) -> None:
     mine = leases(tmp_path)
     half = tmp_path / "leases" / "a.lease"
+    half.parent.mkdir()
     half.write_text('{"token": ')
     assert not mine.take("a")
     old = time.time() - 120

@@ -42,7 +42,6 @@ class Leases:
         self._held: set[str] = set()
         self._lock, self._over = threading.Lock(), threading.Event()
         self._beat: threading.Thread | None = None
-        folder.mkdir(parents=True, exist_ok=True)
 
     def take(self, key: str) -> bool:
         """Take a lease, also one whose owner is dead; tell whether it is ours now."""
