@@ -23,8 +23,7 @@ def instead(count: int) -> bool:
 
     Raises TiskelError where a kernel would not start: TISKEL_NUM_THREADS is wrong.
     """
-    requested_threads()
-    return count <= MOST and not running()
+    return count <= MOST and not running() and requested_threads() > 0  # asked last: it reads files
 
 
 def nearest(points: Points, k: int) -> tuple[Lists, Table] | None:

@@ -38,10 +38,8 @@ BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
 # trees 0.04 to 0.15 and 0.44 up; what fronts make of noisy twigs 0.07 to 0.25 and 0.12 to 0.6].
 WIDE = 2.0  # spacings in its radius, at least
 SHARP = 0.125  # root mean square of the distances of its points from it, in radii, at most
-OUTWARD = (
-    0.5  # mean squared cosine of normals and ways from the axis, at least; a third where they look anywhere [limbs
-)
-# of scans and of trees as noisy as their points are apart from 0.63, noisy crowns taken for limbs to 0.49]
+OUTWARD = 0.5  # mean squared cosine of its normals and the ways from its axis, at least; by chance it is a third [limbs
+# of scans, and of trees as noisy as their points are apart, from 0.63; noisy crowns taken for limbs to 0.49]
 COVERED = 0.4  # share of its surface with points, at least
 MANY = 0.2  # share of points on such limbs from which on there are some [scans 0.34 up, noisy twigs to 0.10]
 SHORTEST = 0.5  # radii in the length of an edge, when its surface is asked for: shorter ones have the points of a ball
