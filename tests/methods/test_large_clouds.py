@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from reference.fixtures import Runner
@@ -17,9 +18,13 @@ from tiskel import (
     shape_graph,
     write_contraction,
 )
-from tiskel.arrays import Points
+from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
-from tiskel.methods.robust.thinning import ENOUGH, thinned
+from tiskel.gallery.trees import thickened, tree
+from tiskel.geometry.radius import RadiusSource
+from tiskel.geometry.round_cones import ConeGraph
+from tiskel.methods.robust.cell_sizes import ENOUGH, cells_of
+from tiskel.methods.robust.thinning import thinned
 from tiskel.metrics.truth import agreement
 from tiskel.params import MaxPoints
 
@@ -60,6 +65,56 @@ def test_a_noisy_trunk_is_one_strand(noise: float) -> None:
     s = extract_skeleton(contract(tube(60_000, 3.0, noise)))
     assert (s.components, s.loops, s.ends) == (1, 0, 2)
     assert np.linalg.norm(s.nodes[:, :2], axis=1).max() < RADIUS / 3
+
+
+def test_wires_that_cross_are_two_however_many_points_they_have() -> None:
+    """Taken as they are, 65 536 points have had three loops, and 262 144 points 9524 ends."""
+    s = extract_skeleton(contract(make_shape("crossing", 65_536)[0]))
+    assert (s.components, s.loops, s.ends) == (2, 0, 4)
+
+
+def test_a_thin_tree_has_its_tips_and_its_bounds() -> None:
+    """Taken as they are, 40 000 points have had 85 ends; bounds come of all points, not of the means."""
+    shape = thickened(tree(tips=40, seed=3), 40_000, 1.0)
+    s = extract_skeleton(contract(make_shape(shape, ShapeParams(count=40_000, seed=3))[0]))
+    assert (s.components, s.loops) == (1, 0)
+    assert abs(s.ends - shape.ends) <= 2
+    assert [note.code for note in s.notes] == ["thin", "thinned"]
+    share = s.radii / feet(shape, s.nodes)
+    assert 0.8 < np.median(share[s.radius_sources == RadiusSource.BOUNDED]) < 1.3
+    assert 0.8 < np.median(share[s.radius_sources == RadiusSource.MEASURED]) < 1.2
+
+
+def feet(shape: ConeGraph, places: Points) -> Numbers:
+    """Return the radii of a shape at the places on its curve that are nearest."""
+    share = np.linspace(0, 1, 60)[:, None]
+    (one, other), (thick, thin) = shape.nodes[shape.edges].transpose(1, 0, 2), shape.radii[shape.edges].T
+    line = (one + share[..., None] * (other - one)).reshape(-1, 3)
+    radii: Numbers = (thick + share * (thin - thick)).ravel()
+    return np.asarray(radii[cKDTree(line).query(places)[1]])
+
+
+def test_lines_across_each_other_are_no_surface() -> None:
+    """They lie in a plane, and have been cut out of the wires about them, a hundred spacings of each as one mean."""
+    x = np.linspace(-1, 1, 15_001)
+    cross = np.concatenate([np.stack([x, 0 * x, 0 * x], axis=1), np.stack([0 * x, x, 0 * x], axis=1)])
+    number = cells_of(cross)
+    x = number.max() + 1
+    assert 5000 < x <= ENOUGH
+    low, high = np.full((x, 3), np.inf), np.full((x, 3), -np.inf)
+    np.minimum.at(low, number, cross)
+    np.maximum.at(high, number, cross)
+    assert np.linalg.norm(high - low, axis=1).max() < 10 * 2 / 15_000
+
+
+def test_the_smallest_cells_grow_until_there_are_few_enough() -> None:
+    """The trunk keeps the cells that its surface has, the wire beside it gets larger ones; one size, and no more."""
+    trunk, wire = tube(40_000, 3.0, radius=0.5), tube(40_000, 3.0, radius=1e-5) + [2.0, 0, 0]
+    number = cells_of(np.concatenate([trunk, wire]))
+    of_trunk, of_wire = np.unique(number[:40_000]), np.unique(number[40_000:])
+    assert not np.intersect1d(of_trunk, of_wire).size
+    assert 0.8 < of_trunk.size / np.unique(cells_of(trunk)).size < 1.25
+    assert 500 < of_wire.size < ENOUGH
 
 
 def test_small_clouds_stay_as_they_are_and_all_can_be_asked_for() -> None:

@@ -50,19 +50,28 @@ def curve_of(
 
 def _with_radii(curve: ConeCurve, points: Points, label: Indices, spacing: float) -> ConeCurve:
     """Return the curve with radii, what they are worth, and regimes; label (n,) is the node of each point."""
-    count, axis = len(curve.nodes), curve.directions
-    offset = points - curve.nodes[label]
-    offset = offset - np.einsum("ij,ij->i", offset, axis[label])[:, None] * axis[label]
-    away = np.linalg.norm(offset, axis=1)
+    count, offset = len(curve.nodes), _beside(curve, points, label)
     size = np.bincount(label, minlength=count)
-    mean, most = np.bincount(label, away, minlength=count) / np.maximum(size, 1), np.zeros(count)
-    np.maximum.at(most, label, away)
-    measured = (size >= MEASURING) & (widest_gaps(offset, axis, label) < TURN)
-    radii = np.where(measured, mean, _even(curve, most))
+    mean = np.bincount(label, np.linalg.norm(offset, axis=1), minlength=count) / np.maximum(size, 1)
+    measured = (size >= MEASURING) & (widest_gaps(offset, curve.directions, label) < TURN)
+    radii = np.where(measured, mean, bounds_of(curve, points, label))
     radii, sources = _modelled(curve, radii, measured)
     thick = measured & (radii > THICK * spacing)
     regimes = np.where(thick, Regime.TUBE, Regime.WIRE).astype(np.uint8)
     return replace(curve, radii=np.maximum(radii, TINY), radius_sources=sources, regimes=regimes)
+
+
+def bounds_of(curve: ConeCurve, points: Points, label: Indices) -> Numbers:
+    """Return (v,) how far points (n, 3) are from the line of their node or of its neighbours, at most."""
+    most = np.zeros(len(curve.nodes))
+    np.maximum.at(most, label, np.linalg.norm(_beside(curve, points, label), axis=1))
+    return _even(curve, most)
+
+
+def _beside(curve: ConeCurve, points: Points, label: Indices) -> Points:
+    """Return the ways (n, 3) to points from the lines of the nodes that label (n,) names, at right angles to them."""
+    offset, axis = points - curve.nodes[label], curve.directions[label]
+    return np.asarray(offset - np.einsum("ij,ij->i", offset, axis)[:, None] * axis)
 
 
 def _even(curve: ConeCurve, values: Numbers) -> Numbers:
