@@ -1,11 +1,12 @@
 """How reliable reading is, counted anew: damaged files and files of reported trouble; writes docs/reliability.md.
 
     python benchmarks/reliability.py --cases 100000 --state out/fuzz --write
+    python benchmarks/reliability.py --write  # without the fuzzer
 
 Runs the fuzzer (tests/fuzz) until every reader has had so many cases, those of
 earlier calls with the same --state included, and reads the files of TISKEL_CASES,
 each in a process of its own. What benchmarks/kills.py, benchmarks/mutation.py and
-`make coverage` left is told as it is.
+`make coverage` left is told as it is; parts that nothing is left of stay as the page has them.
 """
 
 import argparse
@@ -29,9 +30,8 @@ CASES = Path(os.environ.get("TISKEL_CASES", ROOT / ".." / "shared" / "cases"))
 PAGE = ROOT / "docs" / "reliability.md"
 HEAD = """# How reliable reading is
 
-Written by `python benchmarks/reliability.py --cases N --state DIR --write`; rerun it after changes to a reader.
-
-## Damaged files
+Written by `python benchmarks/reliability.py --cases N --state DIR --write`; rerun it after changes to a reader."""
+DAMAGED = """## Damaged files
 
 Sound files with one to four changes each: bits, numbers, lines, lengths, pieces of other files (`tests/fuzz`). A fault
 is a crash, more than 2 s of the processor, more memory than ten times the file and 200 MB, any exception but
@@ -40,6 +40,18 @@ is a crash, more than 2 s of the processor, more memory than ten times the file 
 | reader | cases | faults |
 |---|---|---|
 """
+
+
+def kept(heading: str) -> str:
+    """Return a part of the page as it is."""
+    return "## " + next(part for part in PAGE.read_text().split("\n\n## ") if part.startswith(heading))
+
+
+def damaged(state: Path, cases: int) -> str:
+    """Run the fuzzer and return the table of readers."""
+    rows = fuzzed(state, cases)
+    all_cases, faults = (sum(int(row.split("|")[at]) for row in rows) for at in (2, 3))
+    return DAMAGED + "\n".join([*rows, f"| all | {all_cases} | {faults} |"])
 
 
 def fuzzed(state: Path, cases: int) -> list[str]:
@@ -79,7 +91,7 @@ def reported() -> list[str]:
 
 def killed(state: Path) -> str:
     """Return the table of runs that were killed, as benchmarks/kills.py left it."""
-    found = json.loads(state.read_text()) if state.exists() else {}
+    found = json.loads(state.read_text())
     rows = [
         f"| `tiskel {name}` | {one['kills']} | {', '.join(f'{end} x{n}' for end, n in one['ends'].items())} | "
         f"{len(one['faults'])} |"
@@ -90,7 +102,7 @@ def killed(state: Path) -> str:
 
 def covered(report: Path) -> str:
     """Return the table of rooms, of how many statements and branches the tests run, as `make coverage` left it."""
-    files = json.loads(report.read_text())["files"] if report.exists() else {}
+    files = json.loads(report.read_text())["files"]
     rooms: dict[str, Counter[str]] = defaultdict(Counter)
     for path, one in files.items():
         words = Path(path).parts
@@ -148,24 +160,21 @@ written. Ends are signal and exit code, "done" where the command was faster than
 def main() -> None:
     """Count, and write or print the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--cases", type=int, help="of every reader; not given: the fuzzer does not run")
     parser.add_argument("--state", type=Path, default=Path("out/fuzz"))
     parser.add_argument("--kills", type=Path, default=Path("out/kills.json"), help="what benchmarks/kills.py counted")
     parser.add_argument("--coverage", type=Path, default=Path("out/coverage.json"), help="what `make coverage` wrote")
     parser.add_argument("--mutants", type=Path, default=Path("out/mutation"), help="what benchmarks/mutation.py found")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
-    rows = fuzzed(given.state, given.cases)
-    cases, faults = (sum(int(row.split("|")[at]) for row in rows) for at in (2, 3))
     parts = [
-        HEAD + "\n".join([*rows, f"| all | {cases} | {faults} |"]),
-        REPORTED + "\n".join(reported()),
-        killed(given.kills),
-        covered(given.coverage),
-        MUTATED + rooms(given.mutants),
-        ENVIRONMENT,
+        kept("Damaged files") if given.cases is None else damaged(given.state, given.cases),
+        REPORTED + "\n".join(reported()) if CASES.is_dir() else kept("Files of reported trouble"),
+        killed(given.kills) if given.kills.exists() else kept("Killed at random moments"),
+        covered(given.coverage) if given.coverage.exists() else kept("Run by the tests"),
+        MUTATED + rooms(given.mutants) if given.mutants.exists() else kept("Changed on purpose"),
     ]
-    page = "\n\n".join(parts)
+    page = "\n\n".join([HEAD, *parts, ENVIRONMENT])
     if given.write:
         PAGE.write_text(page)
     else:

@@ -117,6 +117,13 @@ def test_the_smallest_cells_grow_until_there_are_few_enough() -> None:
     assert 500 < of_wire.size < ENOUGH
 
 
+def test_no_fewer_than_there_are_clusters() -> None:
+    """Fifty of them, far apart, are as many cells at every size."""
+    generator = np.random.default_rng(0)
+    points = np.repeat(np.arange(50), 500)[:, None] * [1e3, 0, 0] + generator.uniform(0, 1e-3, (25_000, 3))
+    assert thinned(points, 10).points.shape == (50, 3)
+
+
 def test_small_clouds_stay_as_they_are_and_all_can_be_asked_for() -> None:
     points = tube(ENOUGH, 1.0)
     choices: list[tuple[Points, MaxPoints]] = [(points, "auto"), (np.concatenate([points, points + 9]), "all")]

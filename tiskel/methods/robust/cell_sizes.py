@@ -176,8 +176,8 @@ def _few_enough(points: Points, size: Indices, cells: Lists, side: float, most: 
     while counts[-1] > most and len(counts) < len(cells):
         counts.append(_count(np.maximum(size, len(counts)), cells))
     least = len(counts) - 1
-    if least == 0:
-        return size, cells
+    if least == 0 or counts[-1] > most:
+        return np.maximum(size, least), cells
     share = np.log(counts[-2] / (ALMOST * most)) / np.log(counts[-2] / counts[-1])
     between = side * 2 ** (least - 2 + min(max(float(share), 0.0), 1.0))
     one_more = numbered(np.floor((points - points.min(axis=0)) / between).astype(np.int64))[1]
