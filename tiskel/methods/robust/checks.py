@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Indices, Numbers, Points
+from tiskel.arrays import Numbers, Points
 from tiskel.geometry.body import shares_of_depth
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.radius import RadiusSource
@@ -15,8 +15,9 @@ from tiskel.geometry.solid import Solid
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.fit import ConeFit
 from tiskel.methods.robust.network import Network
+from tiskel.methods.robust.thinning import given_to
 from tiskel.methods.robust.wire.curve import bounds_of
-from tiskel.methods.trace import Sections
+from tiskel.methods.trace import Sections, Trace
 
 # Found by trial on the shapes of the gallery, clean and degraded, and on seven scans. In brackets:
 # how many of the 14 curves of benchmarks/sensitivity.md change with 0.7 and 1.4 times the value.
@@ -144,24 +145,22 @@ def radius_sources(found: Candidate) -> npt.NDArray[np.uint8]:
     return sources
 
 
-def radii_of(found: Candidate, thinned: tuple[Points, Indices] | None = None) -> Numbers:
-    """Return (v,) the radii: bounds of wires are no less than their points can tell.
-
-    Of a cloud that was thinned all points (n, 3) tell, in the cloud's own axes, of
-    which (n,) names the mean that each went into.
-    """
+def radii_of(found: Candidate, trace: Trace) -> Numbers:
+    """Return (v,) the radii: bounds of wires are no less than their points can tell, those that were merged, too."""
     curve, fit = found.curve, found.fit
     bounds = (curve.regimes == Regime.WIRE) & (curve.radius_sources == RadiusSource.BOUNDED)
+    if not bounds.any():
+        return curve.radii
     size = np.bincount(fit.nodes, minlength=len(curve.nodes))
     radii, spacings, usual = curve.radii, found.network.spacings[fit.rows], found.network.spacing
-    if thinned is not None and bounds.any():
-        points, mean = thinned
+    points, mean = given_to(trace)
+    if len(points) > len(trace.rows):
         many = np.bincount(mean, minlength=len(found.network.points))  # in a row on a wire, so as many times closer
         spacings, usual = spacings / many[fit.rows], np.inf
         node = np.full(len(many), -1, np.int32)
         node[fit.rows] = fit.nodes
         on = np.flatnonzero(node[mean] >= 0)
-        radii = np.minimum(radii, bounds_of(curve, points[on], node[mean[on]]))
+        radii = np.minimum(radii, bounds_of(curve, points[on] @ found.network.axes.T, node[mean[on]]))
     total = np.bincount(fit.nodes, spacings, minlength=len(curve.nodes))
     spacing = np.minimum(np.where(size > 0, total / np.maximum(size, 1), found.network.spacing), usual)
     return np.asarray(np.where(bounds, np.maximum(radii, NO_LESS * spacing), curve.radii))

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from tiskel.arrays import Indices, Points
 from tiskel.errors import TiskelError
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.solid import solid_of
@@ -111,7 +110,7 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
     contracted = trace.points.copy()
     contracted[fit.rows] = fit.places @ network.axes
     nodes = curve.nodes @ network.axes
-    radii = radii_of(best, _thinned(trace, network))
+    radii = radii_of(best, trace)
     graph = CurveGraph(nodes, curve.edges, radii, curve.bridged, radius_sources(best), regimes_of(best))
     judged = Judged(
         graph=graph,
@@ -125,11 +124,3 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
         axes=network.axes,
     )
     return MethodCurve(graph, node[trace.survivor_of()], contracted, (*doubts_of(judged), *told(trace)))
-
-
-def _thinned(trace: Trace, network: Network) -> tuple[Points, Indices] | None:
-    """Return the given points in the axes of the network, and the mean that each went into, if there are means."""
-    given = np.flatnonzero(trace.merged_step != 0)  # without duplicates
-    if len(given) == len(trace.rows):
-        return None
-    return trace.cloud[given] @ network.axes.T, trace.survivor_of()[given]

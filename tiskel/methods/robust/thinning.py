@@ -11,12 +11,11 @@ from tiskel.arrays import TINY, Indices, Points
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.methods.robust.axes import sums
-from tiskel.methods.robust.cell_sizes import ENOUGH, cells_of
+from tiskel.methods.robust.cell_sizes import AROUND, ENOUGH, cells_of
 from tiskel.methods.robust.network import own_axes
 from tiskel.methods.trace import Trace
 from tiskel.params import MaxPoints
 
-AROUND = 12  # cells whose points are counted together, the cell itself included
 SLIVER = 0.4  # of the points that the cells about a cell have in the mean; cells with fewer are no cells of their own
 HARDLY = 0.5  # of the points left: thinning costs as much as it would save
 DIGITS = 6  # of distances from a mean in the largest; what is alike to so many is equally far
@@ -76,8 +75,13 @@ def told(trace: Trace) -> tuple[CurveWarning, ...]:
 
 def remembered(trace: Trace) -> Points:
     """Return the points (m, 3) that a trace was made from: means of those that were merged, not of duplicates."""
+    return _averaged(*given_to(trace), len(trace.rows))
+
+
+def given_to(trace: Trace) -> tuple[Points, Indices]:
+    """Return the points (n, 3) that means were made of, without duplicates, and the mean (n,) that each went into."""
     once = trace.merged_step != 0
-    return _averaged(trace.cloud[once], trace.survivor_of()[once], len(trace.rows))
+    return trace.cloud[once], trace.survivor_of()[once]
 
 
 def _without_slivers(points: Points, place: Indices) -> Indices:
