@@ -35,7 +35,7 @@ def without_corners(curve: ConeCurve, body: Body) -> ConeCurve:
         for path in paths:
             if curve.degrees[path[-1]] == 1:
                 out = _sticking_out(curve, path)
-                if not (_is_limb(curve, path, out, body.step) and not _in_web(curve, path, paths, body)):
+                if not (_is_limb(curve, path, out, body.step) and not in_web(curve, path, paths, body)):
                     corners.append((float(out.max()), int(path[-1]), path))
         if not corners:
             return curve
@@ -59,10 +59,15 @@ def _is_limb(curve: ConeCurve, path: Indices, out: Numbers, step: float) -> bool
     return long_enough and bool(radii[first] - radii[last] < TAPERS * (way[last] - way[first]))
 
 
-def _in_web(curve: ConeCurve, path: Indices, paths: list[Indices], body: Body) -> bool:
+def in_web(curve: ConeCurve, path: Indices, paths: list[Indices], body: Body) -> bool:
     """Tell whether there is no gap between a branch and another one from its joint: both are in one flat part."""
     radii = curve.radii[path]
-    own = float(np.median(radii[_sticking_out(curve, path) > radii]))
+    beyond = radii[_sticking_out(curve, path) > radii]
+    if not len(beyond):  # all of it is in the ball of its joint
+        return True
+    own = float(np.median(beyond))
+    if own == 0:  # outside the body, or too thin for its grid
+        return False
     last = int(np.flatnonzero(radii >= FULL * own)[-1])
     joint, tip, length = curve.nodes[path[0]], curve.nodes[path[last]], float(along(curve, path)[last])
     for other in paths:
@@ -73,7 +78,8 @@ def _in_web(curve: ConeCurve, path: Indices, paths: list[Indices], body: Body) -
             node = int(other[min(int(np.searchsorted(way, length)), len(other) - 1)])
             if _cosine(tip - joint, curve.nodes[node] - joint) > BESIDE:
                 probes = tip + PROBES[:, None] * (curve.nodes[node] - tip)
-                if (body.clearance_at(probes) >= WEB * min(own, float(curve.radii[node]))).all():
+                least = WEB * min(own, float(curve.radii[node]))
+                if least > 0 and (body.clearance_at(probes) >= least).all():
                     return True
     return False
 
