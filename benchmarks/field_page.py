@@ -137,7 +137,10 @@ def faults(rows: list[Row]) -> str:
     lines = []
     for setting in dict.fromkeys(row["setting"] for row in rows):
         for method in methods_of(rows):
-            bad = [r for r in rows if (r["setting"], r["method"]) == (setting, method) and r.get("wrong")]
+            scored = [r for r in rows if (r["setting"], r["method"]) == (setting, method)]
+            if not scored:
+                continue
+            bad = [r for r in scored if r.get("wrong")]
             said = [
                 f"{r['shape']} ({r.get('crashed') or r['wrong']}{'' if r.get('warnings') else '; no warning'})"
                 for r in bad
