@@ -54,7 +54,7 @@ def _tapers(curve: ConeCurve, path: Indices) -> bool:
 def _in_plate(curve: ConeCurve, path: Indices, fine: ConeCurve, its: Indices) -> bool:
     """Tell whether the cones of a branch, from its end, are wider than the body; its is the same, from the joint."""
     radii = np.interp(fine.along(its), curve.along(path[::-1]), curve.radii[path[::-1]])
-    return bool(np.median(fine.radii[its] / radii) < FLAT)
+    return bool(np.median(fine.radii[its] - FLAT * radii) < 0)
 
 
 def _with_clearances(curve: ConeCurve, body: Body) -> ConeCurve:
