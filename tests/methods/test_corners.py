@@ -7,8 +7,9 @@ from tiskel import ShapeParams, contract, extract_skeleton, make_shape
 from tiskel.gallery.families import BODIES
 from tiskel.geometry.body import Body, body_of
 from tiskel.geometry.graph import edge_lengths
+from tiskel.methods.robust.body.limbs import TAPERS
 from tiskel.methods.robust.body.strands import plain_curve
-from tiskel.methods.robust.corners import TAPERS, _with_clearances, without_corners
+from tiskel.methods.robust.corners import _with_clearances, without_false_limbs
 from tiskel.methods.robust.curve import ConeCurve
 
 
@@ -22,7 +23,7 @@ def with_branch(*branch: tuple[float, float]) -> ConeCurve:
 
 
 def kept(curve: ConeCurve, body: Body) -> bool:
-    fewer = without_corners(curve, body)
+    fewer = without_false_limbs(curve, body)
     return bool((curve if fewer is None else fewer).degrees.max() == 3)
 
 

@@ -9,20 +9,19 @@ there is a gap between it and the next one, where the inside of a corner or of a
 
 import numpy as np
 
-from tiskel.arrays import Indices
+from tiskel.arrays import Indices, within_runs
 from tiskel.geometry.body import Body
 from tiskel.geometry.graph import edge_lengths
-from tiskel.methods.robust.body.limbs import in_web
+from tiskel.methods.robust.body.limbs import TAPERS, in_web
 from tiskel.methods.robust.body.strands import plain_curve
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes
 
 # Found by trial on bars, plates and brackets with 4096 to 65 536 points, and on torsos and knobs.
 SHORT = 3.0  # radii of its joint, up to which a branch may be no limb: in corners 0.9 to 1.3, in plates up to 2.9
-TAPERS = 0.45  # of the way that the radius falls by: corners have 0.46 to 0.83
 FLAT = 0.5  # of the radius of the cones along a branch, in the median: with less clearance it is in a plate
 
 
-def without_corners(curve: ConeCurve, body: Body) -> ConeCurve | None:
+def without_false_limbs(curve: ConeCurve, body: Body) -> ConeCurve | None:
     """Contract into their joint all branches that are no limbs of a body; None where there are none.
 
     A joint where nothing else would be left keeps them.
@@ -47,7 +46,7 @@ def without_corners(curve: ConeCurve, body: Body) -> ConeCurve | None:
 
 
 def _tapers(curve: ConeCurve, path: Indices) -> bool:
-    """Tell whether a branch, from its end to its joint, tapers like a corner."""
+    """Tell whether a branch, from its end to its joint, tapers like a corner: fitted ones have 0.46 to 0.83."""
     return bool(curve.radii[path[-1]] - curve.radii[path[0]] > TAPERS * curve.along(path)[-1])
 
 
@@ -61,13 +60,12 @@ def _with_clearances(curve: ConeCurve, body: Body) -> ConeCurve:
     """Return a curve with a node for every cell of a body's grid along it, behind its own, its clearances as radii."""
     (first, second), count = curve.edges.T, len(curve.nodes)
     parts = np.maximum(1, np.ceil(edge_lengths(curve.nodes, curve.edges) / body.step)).astype(np.int32)
-    stops = np.cumsum(parts - 1)
     edge = np.repeat(np.arange(len(parts)), parts - 1)  # of each new node
-    new = np.arange(len(edge))
-    place = new - (stops - parts + 1)[edge] + 1  # on its edge, from 1
+    place = within_runs(parts - 1) + 1  # on its edge, from 1
+    new = count + np.arange(len(edge))
     share = (place / parts[edge])[:, None]
     nodes = np.concatenate([curve.nodes, (1 - share) * curve.nodes[first[edge]] + share * curve.nodes[second[edge]]])
-    inner = np.stack([np.where(place == 1, first[edge], count + new - 1), count + new], axis=1)
-    last = np.stack([np.where(parts > 1, count + stops - 1, first), second], axis=1)
+    inner = np.stack([np.where(place == 1, first[edge], new - 1), new], axis=1)
+    last = np.stack([np.where(parts > 1, count + np.cumsum(parts - 1) - 1, first), second], axis=1)
     edges = np.concatenate([inner, last]).astype(np.int32)
     return plain_curve(nodes, edges, body.clearance_at(nodes))

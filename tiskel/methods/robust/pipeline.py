@@ -10,7 +10,7 @@ from tiskel.methods.robust.branches import (
 )
 from tiskel.methods.robust.bridges import bridged
 from tiskel.methods.robust.checks import Candidate
-from tiskel.methods.robust.corners import without_corners
+from tiskel.methods.robust.corners import without_false_limbs
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.cycles import without_filled_cycles
 from tiskel.methods.robust.ends import with_stubs
@@ -63,7 +63,7 @@ def fitted_curve(
         if longer is None:
             break
         found = fit(longer, again + 1)
-    if solid.body is not None and (fewer := without_corners(found.curve, solid.body)) is not None:
+    if solid.body is not None and (fewer := without_false_limbs(found.curve, solid.body)) is not None:
         found = fit(fewer, again)
     curve = with_stubs(found.curve, network, sections)
     widest = params.bridge_gaps if network.surface is None else 0  # a mesh knows what is connected

@@ -21,12 +21,6 @@ SHARED = 0.95  # of the larger clearance of two branches, that the middle betwee
 ALIKE = 0.0  # cosine between two branches that may be one, up to 90 degrees
 
 
-def along(curve: ConeCurve, path: Indices) -> Numbers:
-    """Return (p,) the way along a path to each of its nodes."""
-    steps = np.linalg.norm(np.diff(curve.nodes[path], axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
 def without_corners(curve: ConeCurve, body: Body) -> ConeCurve:
     """Contract, the one that sticks out least first, the branches that are no limbs."""
     while True:
@@ -54,7 +48,7 @@ def _is_limb(curve: ConeCurve, path: Indices, out: Numbers, step: float) -> bool
     beyond = np.flatnonzero(out > radii)  # centres outside the ball of the joint
     if not len(beyond) or out.max() < STICKS_OUT * radii[beyond].max():
         return False
-    way, last, first = along(curve, path), len(path) - 1, int(beyond[0])
+    way, last, first = curve.along(path), len(path) - 1, int(beyond[0])
     long_enough = bool((way[last] - way[beyond] >= np.maximum(KEEPS * radii[beyond], 2 * step)).any())
     return long_enough and bool(radii[first] - radii[last] < TAPERS * (way[last] - way[first]))
 
@@ -69,11 +63,11 @@ def in_web(curve: ConeCurve, path: Indices, paths: list[Indices], body: Body) ->
     if own == 0:  # outside the body, or too thin for its grid
         return False
     last = int(np.flatnonzero(radii >= FULL * own)[-1])
-    joint, tip, length = curve.nodes[path[0]], curve.nodes[path[last]], float(along(curve, path)[last])
+    joint, tip, length = curve.nodes[path[0]], curve.nodes[path[last]], float(curve.along(path)[last])
     for other in paths:
         if other[0] != path[0] or other[1] == path[1]:
             continue
-        way = along(curve, other)
+        way = curve.along(other)
         if way[-1] > AS_LONG * length:
             node = int(other[min(int(np.searchsorted(way, length)), len(other) - 1)])
             if _cosine(tip - joint, curve.nodes[node] - joint) > BESIDE:
@@ -125,7 +119,7 @@ def _longest_zip(curve: ConeCurve, body: Body) -> tuple[Indices, Indices, Points
 
 def _zip(curve: ConeCurve, one: Indices, other: Indices, body: Body) -> tuple[float, Indices, Indices, Points] | None:
     """Return how far two branches from a joint are one, who takes whose place, and where these go."""
-    ways = [along(curve, path) for path in (one, other)]
+    ways = [curve.along(path) for path in (one, other)]
     pairs = _side_by_side(ways[0], ways[1], min(_limit(curve, one, ways[0]), _limit(curve, other, ways[1])))
     if len(pairs) < 2:
         return None

@@ -11,7 +11,6 @@ from tiskel.arrays import Edges, Indices, Mask, Numbers, Points
 from tiskel.geometry.body import Body
 from tiskel.geometry.graph import tidy_edges
 from tiskel.geometry.thinning import Grid
-from tiskel.methods.robust.body.limbs import along
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.network import Network
 from tiskel.methods.trace import Sections
@@ -88,7 +87,7 @@ def evened(curve: ConeCurve, body: Body) -> ConeCurve:
 
 def _links(curve: ConeCurve, branch: Indices, least: float) -> list[tuple[int, int]]:
     """Return edges between some nodes of a branch; three at least of a ring."""
-    way, wanted = along(curve, branch), np.maximum(APART * curve.radii[branch], least)
+    way, wanted = curve.along(branch), np.maximum(APART * curve.radii[branch], least)
     share = np.concatenate([[0.0], np.cumsum(np.diff(way) * 2 / (wanted[1:] + wanted[:-1]))])
     parts = max(3 if branch[0] == branch[-1] else 2, int(np.round(share[-1])))
     chosen = np.unique([int(np.abs(share - share[-1] * k / parts).argmin()) for k in range(parts + 1)])
