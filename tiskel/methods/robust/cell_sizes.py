@@ -14,7 +14,7 @@ size, where a surface holds four times as many.
 
 Where that leaves too many, the smallest cells grow, those of twigs, wires and edges, to one size all over the cloud, as
 the wire regime goes by one spacing. The curve of wires is the better for it: of a crossing of two wires with 262 144
-points chance has made 9524 ends.
+points chance has made 9524 ends. Bodies do with fewer points than thin limbs, and time grows with the points.
 """
 
 import numpy as np
@@ -25,15 +25,19 @@ from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.spacing import SAMPLED, spacing_of
 from tiskel.methods.robust.axes import sums
 
-ENOUGH = 20_000  # points; clouds of no more are taken as they are, and thin limbs thinned to no more [30 000: wires get
-# more ends]
-A_POINT = 0.1  # cells for every point of a surface, at most: six times the tree's query leaves time for no more
+LARGE = 12_000  # points; clouds of no more are taken as they are
+ENOUGH = 20_000  # points that a cloud is thinned to at most [30 000: wires get more ends]
+OF_BODY = 0.45  # share of the points of a body that are left at most; all of thin limbs [of trees too: F is 1 % less]
+MANY = 0.15  # share of points on thin limbs from which on a cloud is of these: bodies have 0 to 0.04, trees 0.18 to 0.9
+A_POINT = 0.05  # cells for every point of a surface, at most: six times the tree's query leaves time for no more
 
 # Found by trial on a half torus, trunks with noise of a tenth and a quarter, and shapes of the gallery, 30 000 to
 # 262 144 points; on wires and thin trees of 65 536 and 262 144.
 AROUND = 12  # cells whose points are looked at together, the cell itself included
 FINEST = 1.75  # spacings: side of the smallest cells [2: fingers of a hand touch at 100 000; 1.5: noisy trunks wobble]
-FLAT = 0.015  # ratio of the lesser variances; flatter cells may be larger: their side is a quarter of a tube's radius
+# Ratio of the lesser variances; flatter cells may be larger: their side is a sixth of a tube's radius [a quarter: ends
+# of a thick body with knobs were lost].
+FLAT = 0.006
 RESOLVED = 0.06  # the same of limbs thick enough to have a surface: the side of the smallest cells is half a radius
 NEARLY = 2.2  # times the least ratio of all sizes, for a size to be as good as any
 SHAPELESS = 0.6  # ratio that no size of cells is below, as where there is no surface: nothing is thinned
@@ -45,7 +49,10 @@ GROWTH = 2**1.5  # times as many points in cells of twice the size, between a wi
 ALMOST = 0.9  # of the most cells: how many are asked for, by what their number falls with
 FULL = 3  # points to a cell, above which that can be seen: cells of one point each hold one at twice the size, too
 SIZES = 12  # of cells at most, each twice as large as the last
-FEWEST = 40  # cells of a size; with fewer they are larger than limbs
+FEWEST = 40  # cells of a size that are looked at
+# Fewer cells of a size may be as large as limbs, and in one plane as flat at that [40: plates and persons scanned from
+# one side lost bars and arms; 800: the same curves].
+LIMBS = 400
 CREASE = 0.3  # ratio at a crease, whatever the size of the cells, at most; a right angle has 0.25
 FINER = 2  # sizes that the cells at a crease may be smaller than those about them
 CHUNK = 65_536  # cells whose neighbourhoods are summed at once, to bound memory
@@ -60,18 +67,26 @@ def cells_of(points: Points, most: int | None = None) -> Indices:
     ratios, doubt, cells = _sizes(points, side)
     size = _levelled(_chosen(ratios, doubt), ratios, cells)
     if most is None:
-        most = ENOUGH + int(A_POINT * ((size > 0) | (ratios[1] <= RESOLVED)).sum())
+        most = _enough(np.where(np.isinf(ratios[0]), np.inf, ratios[1]), size)
     size, cells = _few_enough(points, size, cells, side, most)
     key = np.take_along_axis(cells, size[None], axis=0)[0] * (len(cells) + 1) + size
     return np.unique(key, return_inverse=True)[1].ravel().astype(np.int32)
 
 
+def _enough(smallest: Numbers, size: Indices) -> int:
+    """Return how many points are enough, by how flat the smallest cells are (n,) and by the sizes chosen (n,)."""
+    of_surface = (size > 0) | (smallest <= RESOLVED)
+    thin = min(float((~of_surface & (smallest > CREASE)).mean()) / MANY, 1.0)
+    return int(min((OF_BODY + thin * (1 - OF_BODY)) * len(size), ENOUGH + A_POINT * of_surface.sum()))
+
+
 def _sizes(points: Points, side: float) -> tuple[Table, Table, Lists]:
     """Return (s, n) for every size of cells how flat it is about each point, its doubt, and each point's cell.
 
-    Linear is inf, as what grows like lines; the doubt is what few points in a volume would have to be
-    multiplied by. The first size, points alone, is looked at only where the
-    next is not flat; elsewhere it counts as no flatter than that.
+    Linear is inf, as what grows like lines and what few cells show; the doubt is
+    what few points in a volume would have to be multiplied by. The first size,
+    points alone, is looked at only where the next is not flat; elsewhere it
+    counts as no flatter than that.
     """
     corner = np.floor((points - points.min(axis=0)) / side).astype(np.int64)
     totals = np.concatenate([np.ones((len(points), 1)), points, _products(points)], axis=1)
@@ -92,7 +107,8 @@ def _sizes(points: Points, side: float) -> tuple[Table, Table, Lists]:
             ratios, many = [_alone(points, cell, flatness, nearest)], [np.where(flatness > FLAT, AROUND, inside)[cell]]
         else:
             fewer = np.bincount(into, before) / np.bincount(into)
-            flatness[(fewer > FULL * AROUND) & (usual < GROWTH * fewer)] = np.inf
+            of_lines = (fewer > FULL * AROUND) & (usual < GROWTH * fewer)
+            flatness[of_lines | (len(corner) < LIMBS)] = np.inf
         before = usual
         ratios.append(flatness[cell])
         cells.append(cell)
@@ -150,7 +166,7 @@ def _chosen(ratios: Table, doubt: Table) -> Indices:
     flat = ratios <= FLAT
     first = flat.argmax(axis=0)
     after = np.arange(len(ratios))[:, None] >= first
-    last = first + np.cumprod(np.where(after, flat, True), axis=0).sum(axis=0) - first - 1
+    last = np.cumprod(np.where(after, flat, True), axis=0).sum(axis=0) - 1
     ratios = ratios * doubt
     least = ratios.min(axis=0)
     nearly = (ratios <= np.minimum(NEARLY * least, VOLUME)).argmax(axis=0)
