@@ -25,8 +25,9 @@ from tiskel.geometry.neighbours import nearest_neighbours, principal_axes
 from tiskel.geometry.spacing import SAMPLED, spacing_of
 from tiskel.methods.robust.axes import sums
 
-LARGE = 12_000  # points; clouds of no more are taken as they are
-ENOUGH = 20_000  # points that a cloud is thinned to at most [30 000: wires get more ends]
+# Points; clouds of no more are taken as they are [12 000: bodies take half the time, a seedling's curve is in the air],
+# larger ones thinned to no more [30 000: wires get more ends].
+ENOUGH = 20_000
 OF_BODY = 0.45  # share of the points of a body that are left at most; all of thin limbs [of trees too: F is 1 % less]
 MANY = 0.15  # share of points on thin limbs from which on a cloud is of these: bodies have 0 to 0.04, trees 0.18 to 0.9
 A_POINT = 0.05  # cells for every point of a surface, at most: six times the tree's query leaves time for no more

@@ -11,7 +11,7 @@ from tiskel.arrays import TINY, Indices, Points
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.neighbours import nearest_neighbours
 from tiskel.methods.robust.axes import sums
-from tiskel.methods.robust.cell_sizes import AROUND, LARGE, cells_of
+from tiskel.methods.robust.cell_sizes import AROUND, ENOUGH, cells_of
 from tiskel.methods.robust.network import own_axes
 from tiskel.methods.trace import Trace
 from tiskel.params import MaxPoints
@@ -55,7 +55,7 @@ class Thinned:
 def thinned(points: Points, most: MaxPoints) -> Thinned:
     """Return a cloud (n, 3) as its surface needs it, of so many points at most, or with all that are given."""
     everyone = np.arange(len(points), dtype=np.int32)
-    if most == "all" or len(points) <= (LARGE if most == "auto" else min(most, LARGE)):
+    if most == "all" or len(points) <= (ENOUGH if most == "auto" else min(most, ENOUGH)):
         return Thinned(points, everyone, everyone)
     own = np.ascontiguousarray((points - points.mean(axis=0)) @ own_axes(points).T)
     place = cells_of(own) if most == "auto" else cells_of(own, most)
