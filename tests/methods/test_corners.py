@@ -58,11 +58,10 @@ def test_a_limb_that_a_gap_parts_from_the_trunk_stays() -> None:
 
 def test_a_short_branch_within_a_plate_is_no_limb() -> None:
     """Cones of a plate are as wide as it, whatever the way: no taper tells that the branch only runs about in it."""
-    plate = block(20, 12, 1)
+    plate = block(20, 8, 1)
     assert not kept(with_branch((1.5, 1.2), (2.5, 1.2)), plate)
-    assert not kept(with_branch((1.5, 1.2), (3.5, 1.2)), plate)
-    assert kept(with_branch((1.5, 1.2), (4.5, 1.2)), plate)  # long
-    assert kept(with_branch((0.1, 0.5), (2.5, 0.5)), plate)  # no wider than the body
+    assert kept(with_branch((1.5, 1.2), (3.5, 1.2)), plate)  # long
+    assert kept(with_branch((0.1, 0.6), (2.5, 0.6)), plate)  # no wider than the body
 
 
 def test_a_joint_does_not_lose_all_its_branches() -> None:

@@ -8,7 +8,6 @@ import pytest
 from tiskel import (
     CurveGraph,
     CurveWarning,
-    RobustParams,
     ShapeParams,
     contract,
     evaluate,
@@ -227,8 +226,7 @@ def test_a_long_flat_bar_is_a_note_and_a_plate_a_warning() -> None:
 
 
 def test_a_flat_ring_is_a_note_and_one_that_ends_stick_out_of_a_warning() -> None:
-    band = make_shape(named_shape("band"), ShapeParams(count=16384))[0]
-    made = extract_skeleton(contract(band, RobustParams(max_points="all")))
+    made = extract_skeleton(contract(make_shape(named_shape("band"), ShapeParams(count=16384))[0]))
     assert (made.ends, made.loops) == (0, 1)
     assert [(doubt.code, doubt.severity) for doubt in (*made.warnings, *made.notes)] == [("flat", "note")]
 

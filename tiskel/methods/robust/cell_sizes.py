@@ -68,14 +68,15 @@ def cells_of(points: Points, most: int | None = None) -> Indices:
     ratios, doubt, cells = _sizes(points, side)
     size = _levelled(_chosen(ratios, doubt), ratios, cells)
     if most is None:
-        most = _enough(np.where(np.isinf(ratios[0]), np.inf, ratios[1]), size)
+        most = _enough(ratios, size)
     size, cells = _few_enough(points, size, cells, side, most)
     key = np.take_along_axis(cells, size[None], axis=0)[0] * (len(cells) + 1) + size
     return np.unique(key, return_inverse=True)[1].ravel().astype(np.int32)
 
 
-def _enough(smallest: Numbers, size: Indices) -> int:
-    """Return how many points are enough, by how flat the smallest cells are (n,) and by the sizes chosen (n,)."""
+def _enough(ratios: Table, size: Indices) -> int:
+    """Return how many points are enough, by how flat cells are (s, n) and by the sizes chosen (n,)."""
+    smallest = np.where(np.isinf(ratios[0]), np.inf, ratios[1])  # wires side by side are flat, each a line
     of_surface = (size > 0) | (smallest <= RESOLVED)
     thin = min(float((~of_surface & (smallest > CREASE)).mean()) / MANY, 1.0)
     return int(min((OF_BODY + thin * (1 - OF_BODY)) * len(size), ENOUGH + A_POINT * of_surface.sum()))

@@ -17,8 +17,8 @@ from tiskel.methods.robust.body.strands import plain_curve
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes
 
 # Found by trial on bars, plates and brackets with 4096 to 65 536 points, and on torsos and knobs.
-SHORT = 4.0  # radii of its joint, up to which a branch may be no limb: in corners 0.9 to 1.3, in plates up to 3.9
-FLAT = 0.7  # of the radius of the cones along a branch, in the median: with less clearance it is in a plate, as are
+SHORT = 3.0  # radii of its joint, up to which a branch may be no limb: in corners 0.9 to 1.3, in plates up to 2.9
+FLAT = 0.65  # of the radius of the cones along a branch, in the median: with less clearance it is in a plate, as are
 # branches about in a strip with 0.53 to 0.63; an end of a thick body without a gap beside it has 0.91
 
 
