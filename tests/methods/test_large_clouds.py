@@ -113,7 +113,7 @@ def test_the_smallest_cells_grow_until_there_are_few_enough() -> None:
     number = cells_of(np.concatenate([trunk, wire]))
     of_trunk, of_wire = np.unique(number[:40_000]), np.unique(number[40_000:])
     assert not np.intersect1d(of_trunk, of_wire).size
-    assert 0.25 < of_trunk.size / np.unique(cells_of(trunk)).size < 4  # sides double from the smallest, which differ
+    assert 0.5 < of_trunk.size / np.unique(cells_of(trunk)).size < 2  # sides double from the smallest, which differ
     assert 500 < of_wire.size < ENOUGH
 
 
