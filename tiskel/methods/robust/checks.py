@@ -49,6 +49,8 @@ class Candidate:
         How many gaps were bridged.
     meetings : int
         How many ends of wires meet another part of the curve and are left open.
+    side_by_side : bool
+        Whether the cloud is one wire whose turns lie side by side, and links were only made along it.
     """
 
     fit: ConeFit
@@ -57,6 +59,7 @@ class Candidate:
     solid: Solid
     gaps: int
     meetings: int = 0
+    side_by_side: bool = False
 
     @property
     def curve(self) -> ConeCurve:

@@ -15,6 +15,7 @@ code            severity what
 ``bridged``     note     gaps crossed by straight lines; a warning where they are much of the curve
 ``small-parts`` note     points left out in small parts; a warning where they are many
 ``one-sided``   note     seen from one side: the curve is on what was seen
+``turns``       note     the cloud is taken for one wire whose turns lie side by side, not for a surface in rows
 ``thin``        note     radii are bounds, the body is thinner than its points tell
 =============== ======== ==========================================================================
 
@@ -143,7 +144,7 @@ def _contacts(j: Judged) -> CurveWarning | None:
         text = f"{graph.loops} loops of wire, one for {each:.0f} spacings of it: wires side by side may run together"
         return CurveWarning("contacts", text, share=1.0)
     ends = touching_ends(graph, j.spacing)
-    if not len(ends) or (share := len(ends) / graph.ends) <= levels.CONTACTS:
+    if j.side_by_side or not len(ends) or (share := len(ends) / graph.ends) <= levels.CONTACTS:
         return None
     text = f"{len(ends)} of {graph.ends} ends lie at another part of the curve: which limbs go on there is a guess"
     return _doubt("contacts", text, share, graph.nodes[ends], None, _severity(share > levels.CONTACTS_SERIOUS))
@@ -235,6 +236,13 @@ def _one_sided(j: Judged) -> CurveWarning | None:
     return _doubt("one-sided", text, share, j.graph.nodes[nodes], None, "note")
 
 
+def _turns(j: Judged) -> CurveWarning | None:
+    if not j.side_by_side:
+        return None
+    text = "the points lie along one wire whose turns are side by side; for a surface in rows choose regime tube"
+    return CurveWarning("turns", text, "note", 1.0)
+
+
 def _thin(j: Judged) -> CurveWarning | None:
     thin = j.graph.radius_sources == RadiusSource.BOUNDED
     share = float(thin.mean())
@@ -246,5 +254,5 @@ def _thin(j: Judged) -> CurveWarning | None:
 
 CHECKS: tuple[Callable[[Judged], CurveWarning | None], ...] = (
     _in_air, _outside, _loops, _open_ends, _contacts, _far, _flat, _no_inside, _short, _bridged, _small, _one_sided,
-    _thin,
+    _turns, _thin,
 )  # fmt: skip

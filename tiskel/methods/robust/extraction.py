@@ -18,6 +18,7 @@ from tiskel.methods.robust.rungs import without_rungs
 from tiskel.methods.robust.sheets import flat_share, on_sheets
 from tiskel.methods.robust.thinning import remembered, told
 from tiskel.methods.robust.treelike import CROWN, without_contacts
+from tiskel.methods.robust.wire.parallel import parallel_links
 from tiskel.methods.trace import MethodCurve, Trace
 from tiskel.params import RobustParams
 from tiskel.progress import SILENT, Span
@@ -52,8 +53,9 @@ def _best(network: Network, trace: Trace, params: RobustParams, span: Span) -> C
     contracted = np.ascontiguousarray(trace.points @ network.axes.T)
     oriented, mesh = network.oriented(contracted), network.surface
     solid = solid_of(oriented) if mesh is None else solid_of(oriented, mesh.handles, mesh.outward)
-    if params.regime == "wire" or (params.regime == "auto" and surely_wires(network)):
-        return wires(network, solid, params)
+    turns = None if params.regime == "tube" or mesh is not None else parallel_links(network)
+    if turns is not None or params.regime == "wire" or (params.regime == "auto" and surely_wires(network)):
+        return wires(network, solid, params, links=turns)
     best = fitted_curve(network, solid, trace.sections, params, span.within(0.1, 0.5))
     span.at(0.5, "other curves")
     if params.regime == "auto" and maybe_wires(best) and shorter(thin := wires(network, solid, params, best), best):
@@ -122,5 +124,6 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
         left_out=left_out,
         solid=best.solid,
         axes=network.axes,
+        side_by_side=best.side_by_side,
     )
     return MethodCurve(graph, node[trace.survivor_of()], contracted, (*doubts_of(judged), *told(trace)))

@@ -36,6 +36,8 @@ class Judged:
         The body inside the cloud, trusted or not.
     axes : (3, 3) float64
         Of the solid, as rows: its coordinates are those of the curve @ axes.T.
+    side_by_side : bool
+        Whether the cloud is taken for one wire whose turns lie side by side.
     """
 
     graph: CurveGraph
@@ -47,6 +49,7 @@ class Judged:
     left_out: Mask
     solid: Solid
     axes: Table
+    side_by_side: bool = False
 
     @cached_property
     def spacing(self) -> float:

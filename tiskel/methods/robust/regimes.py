@@ -20,6 +20,7 @@ from tiskel.methods.robust.network import Network
 from tiskel.methods.robust.sheets import flat_share
 from tiskel.methods.robust.treelike import CROWN
 from tiskel.methods.robust.wire import wire_curve
+from tiskel.methods.robust.wire.links import Links
 from tiskel.params import RobustParams
 
 # Found by trial on generated trees, the shapes of the gallery, clean and degraded, and on scans.
@@ -59,12 +60,14 @@ def maybe_wires(found: Candidate) -> bool:
     return not found.solid.trusted or loops > handles or (loops < handles and flat_share(found) < SHEETS)
 
 
-def wires(network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None) -> Candidate:
+def wires(
+    network: Network, solid: Solid, params: RobustParams, tubes: Candidate | None = None, links: Links | None = None
+) -> Candidate:
     """Return the curve of the wire regime, and what judges it; thick limbs are those of tubes that are known."""
     known = None if tubes is None else on_sure_tubes(tubes)
-    curve, sections, meetings = wire_curve(network, params, known, noisy=network.linear_share < NOISY)
+    curve, sections, meetings = wire_curve(network, params, known, network.linear_share < NOISY, links)
     fit = feet_of_own(curve, network.points, sections.section)
-    return Candidate(fit, sections, network, solid, int(curve.bridged.sum()), meetings)
+    return Candidate(fit, sections, network, solid, int(curve.bridged.sum()), meetings, links is not None)
 
 
 def on_sure_tubes(tubes: Candidate) -> Indices:

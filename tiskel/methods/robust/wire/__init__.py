@@ -15,6 +15,7 @@ TEASAR, Sato et al. 2000; Verroust and Lazarus 2000):
 7. Loops, where ends meet head on and the body is no tree (:mod:`.loops`).
 8. Where wires that are clear lines pass each other, apart, links from one to the other go, and 2 to 7 are done anew
    (:mod:`.crossings`).
+9. Of a wire whose turns lie side by side, as in a spring, there are links along it alone (:mod:`.parallel`).
 """
 
 from tiskel.arrays import Indices
@@ -42,14 +43,16 @@ SMALLEST_PART = 10  # points; separate parts with fewer get no curve, unless the
 
 
 def wire_curve(
-    network: Network, params: RobustParams, tubes: Indices | None = None, noisy: bool = False
-) -> tuple[ConeCurve, Sections, int]:
+    network: Network, params: RobustParams, tubes: Indices | None = None, noisy: bool = False,
+    known: Links | None = None,
+) -> tuple[ConeCurve, Sections, int]:  # fmt: skip
     """Return the curve of a cloud of wires, the sections that its nodes stand for, and how many ends met and are open.
 
     tubes (n,) name the sections of points on limbs that are known, -1 for
-    others; noisy says that points of threads may look like rings.
+    others; noisy says that points of threads may look like rings; known are
+    the links, where they are.
     """
-    links = links_of(network.points, max(SMALLEST_PART, int(params.least_part * len(network.points))))
+    links = known or links_of(network.points, max(SMALLEST_PART, int(params.least_part * len(network.points))))
     found = _curve(network, links, params, tubes, noisy)
     for _ in range(ROUNDS if network.linear_share > CLEAR else 0):  # one that is parted may show another
         if not (crossings := crossings_of(found[0], links.spacing)):

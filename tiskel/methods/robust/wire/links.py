@@ -60,8 +60,7 @@ def links_of(points: Points, least: int) -> Links:
     first = np.repeat(np.arange(count, dtype=np.int32), neighbours.shape[1] - 1)
     second, lengths = neighbours[:, 1:].ravel(), np.sqrt(squares[:, 1:].ravel())
     graph = _symmetric(first, second, lengths, count)
-    tree = minimum_spanning_tree(graph)
-    spacing = max(float(np.quantile(tree.data, QUANTILE)) * ABOVE, CLOSEST * diagonal(points))
+    spacing = _spacing(points, graph)
     joins, kept = _joins(points, graph, spacing, least)
     ends = np.concatenate([joins, joins[:, ::-1]])
     graph = graph.tocoo()
@@ -73,6 +72,22 @@ def links_of(points: Points, least: int) -> Links:
         spacing,
         kept,
     )
+
+
+def linked(points: Points, pairs: Pairs) -> Links:
+    """Return the links of given pairs (l, 2) of points (n, 3); kept are those of the largest piece."""
+    one, other = pairs.astype(np.int32).T
+    graph = _symmetric(one, other, np.linalg.norm(points[one] - points[other], axis=1), len(points))
+    piece, both = connected_components(graph, directed=False)[1], graph.tocoo()
+    kept = np.asarray(piece == np.bincount(piece).argmax())
+    first, second = both.row.astype(np.int32), both.col.astype(np.int32)
+    return Links(first, second, np.asarray(both.data), _spacing(points, graph), kept)
+
+
+def _spacing(points: Points, graph: sparse.csr_array) -> float:
+    """Return how far points (n, 3) are apart along wires."""
+    steps = minimum_spanning_tree(graph).data
+    return max(float(np.quantile(steps, QUANTILE)) * ABOVE if len(steps) else 0.0, CLOSEST * diagonal(points))
 
 
 def _symmetric(first: Indices, second: Indices, lengths: Numbers, count: int) -> sparse.csr_array:
