@@ -1,12 +1,15 @@
-"""Contacts: ends that lie at another part of the curve, as twigs do that touch, or loops that were left open."""
+"""Contacts: ends that lie at another part of the curve, as twigs do that touch, and wires that lie side by side."""
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from tiskel.arrays import Indices
+from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.regime import Regime
 from tiskel.geometry.ways import steps_of, ways_from
 from tiskel.methods.robust import levels
+from tiskel.methods.robust.judged import Judged, doubt, severity
 
 
 def touching_ends(graph: CurveGraph, spacing: float) -> Indices:
@@ -24,3 +27,24 @@ def touching_ends(graph: CurveGraph, spacing: float) -> Indices:
         if any(along.get(node, (np.inf, 0))[0] > far for node, far in zip(near.tolist(), least.tolist(), strict=True)):
             found.append(end)
     return np.array(found, np.int32)
+
+
+def contacts(j: Judged) -> CurveWarning | None:
+    """Return the doubt about ends that lie at another part of the curve, or wires that run together."""
+    graph, wires = j.graph, (j.graph.regimes == Regime.WIRE).mean() > levels.MOSTLY
+    if wires and graph.loops >= levels.NET and (each := graph.length / graph.loops / j.spacing) < levels.MESH:
+        text = f"{graph.loops} loops of wire, one for {each:.0f} spacings of it: wires side by side may run together"
+        return CurveWarning("contacts", text, share=1.0)
+    ends = touching_ends(graph, j.spacing)
+    if j.side_by_side or not len(ends) or (share := len(ends) / graph.ends) <= levels.CONTACTS:
+        return None
+    text = f"{len(ends)} of {graph.ends} ends lie at another part of the curve: which limbs go on there is a guess"
+    return doubt("contacts", text, share, graph.nodes[ends], None, severity(share > levels.CONTACTS_SERIOUS))
+
+
+def turns(j: Judged) -> CurveWarning | None:
+    """Return the note that turns which lie side by side were taken for one wire."""
+    if not j.side_by_side:
+        return None
+    text = "the points lie along one wire whose turns are side by side; for a surface in rows choose regime tube"
+    return CurveWarning("turns", text, "note", 1.0)

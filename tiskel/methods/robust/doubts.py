@@ -28,19 +28,18 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tiskel.arrays import TINY, Numbers, Points, diagonal
+from tiskel.arrays import TINY, diagonal
 from tiskel.geometry.air import in_the_air
 from tiskel.geometry.curve import curve_samples
-from tiskel.geometry.doubt import CurveWarning, Severity, as_places
+from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import component_labels
 from tiskel.geometry.oriented import oriented_cloud, places_inside
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
-from tiskel.geometry.representatives import few_places
 from tiskel.geometry.ways import on_loops
 from tiskel.methods.robust import levels
-from tiskel.methods.robust.contacts import touching_ends
-from tiskel.methods.robust.judged import Judged
+from tiskel.methods.robust.contacts import contacts, turns
+from tiskel.methods.robust.judged import Judged, doubt, severity
 from tiskel.methods.robust.openings import open_ends_in_sight
 from tiskel.methods.robust.turning import flat_points, one_sided_nodes, roughness
 
@@ -60,21 +59,8 @@ def doubts_of(judged: Judged) -> tuple[CurveWarning, ...]:
         Places in the unit of the curve.
     """
     checks = CHECKS if len(judged.graph.edges) else (_short, _small)
-    told = [doubt for check in checks if (doubt := check(judged)) is not None]
-    return tuple(sorted(told, key=lambda doubt: doubt.severity != "warning"))
-
-
-def _doubt(
-    code: str, text: str, share: float, places: Points, weight: Numbers | None = None, severity: Severity = "warning"
-) -> CurveWarning:
-    few = few_places(places, np.ones(len(places)) if weight is None else weight)
-    return CurveWarning(
-        code, text.format(share=f"{share:.0%}" if share >= 0.01 else "less than 1%"), severity, share, as_places(few)
-    )
-
-
-def _severity(serious: bool) -> Severity:
-    return "warning" if serious else "note"
+    told = [found for check in checks if (found := check(judged)) is not None]
+    return tuple(sorted(told, key=lambda found: found.severity != "warning"))
 
 
 def _in_air(j: Judged) -> CurveWarning | None:
@@ -83,7 +69,7 @@ def _in_air(j: Judged) -> CurveWarning | None:
     counted = measured if j.bridged_share > levels.BRIDGED_SHARE else np.ones_like(measured)  # nobody is told twice
     if (much := air.share_of(counted)) > levels.AIR_MUCH:
         places = air.places & counted
-        return _doubt("in-air", AIR, much, j.samples.points[places], air.distance[places])
+        return doubt("in-air", AIR, much, j.samples.points[places], air.distance[places])
     share = air.share_of(measured)
     if share <= levels.AIR_SHARE:
         return None
@@ -91,7 +77,7 @@ def _in_air(j: Judged) -> CurveWarning | None:
     serious = air.share_of(measured & wide.places) > levels.AIR_SERIOUS
     text = AIR if serious else AIR + ", over holes in the scan"
     places = air.places & (measured & wide.places if serious else measured)
-    return _doubt("in-air", text, share, j.samples.points[places], air.distance[places], _severity(serious))
+    return doubt("in-air", text, share, j.samples.points[places], air.distance[places], severity(serious))
 
 
 def _outside(j: Judged) -> CurveWarning | None:
@@ -107,7 +93,7 @@ def _outside(j: Judged) -> CurveWarning | None:
     if clearly.mean() <= levels.OUTSIDE_SHARE:
         return None
     text = "{share} of the curve lies outside the body"
-    return _doubt("outside", text, float((~inside).mean()), j.samples.points[clearly])
+    return doubt("outside", text, float((~inside).mean()), j.samples.points[clearly])
 
 
 def _surely_inside(j: Judged) -> bool:
@@ -126,7 +112,7 @@ def _loops(j: Judged) -> CurveWarning | None:
         text = f"the body has {handles} handles, the curve only {loops} loops"
         return CurveWarning("loops", text, share=(handles - loops) / handles)
     text = f"the curve has {loops} loops, the body only {handles} handles"
-    return _doubt("loops", text, (loops - handles) / loops, j.graph.nodes[on_loops(j.graph)])
+    return doubt("loops", text, (loops - handles) / loops, j.graph.nodes[on_loops(j.graph)])
 
 
 def _open_ends(j: Judged) -> CurveWarning | None:
@@ -135,19 +121,7 @@ def _open_ends(j: Judged) -> CurveWarning | None:
         return None
     text = f"{len(ends)} ends stop at a hole in the scan and face another part of the curve: they may belong together"
     share = len(ends) / j.graph.ends
-    return _doubt("open-ends", text, share, j.graph.nodes[ends], None, _severity(share > levels.OPEN_SHARE))
-
-
-def _contacts(j: Judged) -> CurveWarning | None:
-    graph, wires = j.graph, (j.graph.regimes == Regime.WIRE).mean() > levels.MOSTLY
-    if wires and graph.loops >= levels.NET and (each := graph.length / graph.loops / j.spacing) < levels.MESH:
-        text = f"{graph.loops} loops of wire, one for {each:.0f} spacings of it: wires side by side may run together"
-        return CurveWarning("contacts", text, share=1.0)
-    ends = touching_ends(graph, j.spacing)
-    if j.side_by_side or not len(ends) or (share := len(ends) / graph.ends) <= levels.CONTACTS:
-        return None
-    text = f"{len(ends)} of {graph.ends} ends lie at another part of the curve: which limbs go on there is a guess"
-    return _doubt("contacts", text, share, graph.nodes[ends], None, _severity(share > levels.CONTACTS_SERIOUS))
+    return doubt("open-ends", text, share, j.graph.nodes[ends], None, severity(share > levels.OPEN_SHARE))
 
 
 def _far(j: Judged) -> CurveWarning | None:
@@ -168,7 +142,7 @@ def _far(j: Judged) -> CurveWarning | None:
     if share <= levels.FAR_SHARE:
         return None
     text = "{share} of the points are far from the curve: a part of the body may have no branch"
-    return _doubt("far", text, share, j.points[far], beyond[far])
+    return doubt("far", text, share, j.points[far], beyond[far])
 
 
 def _flat(j: Judged) -> CurveWarning | None:
@@ -186,7 +160,7 @@ def _flat(j: Judged) -> CurveWarning | None:
     text = "{share} of the points lie where the body is flat: " + (
         "the curve is the middle of a sheet there" if sheet else "a curve says little about it there"
     )
-    return _doubt("flat", text, share, j.graph.nodes[np.unique(node)], None, _severity(not (sheet or middle)))
+    return doubt("flat", text, share, j.graph.nodes[np.unique(node)], None, severity(not (sheet or middle)))
 
 
 def _no_inside(j: Judged) -> CurveWarning | None:
@@ -214,8 +188,8 @@ def _bridged(j: Judged) -> CurveWarning | None:
     over = graph.edges[graph.bridged]
     gaps = len(np.unique(component_labels(len(graph.nodes), over)[over[:, 0]]))
     text = f"{gaps} gaps in the scan were bridged by straight lines, {{share}} of the curve"
-    serious = _severity(share > levels.BRIDGED_SHARE)
-    return _doubt("bridged", text, share, graph.nodes[over].mean(axis=1), graph.lengths[graph.bridged], serious)
+    serious = severity(share > levels.BRIDGED_SHARE)
+    return doubt("bridged", text, share, graph.nodes[over].mean(axis=1), graph.lengths[graph.bridged], serious)
 
 
 def _small(j: Judged) -> CurveWarning | None:
@@ -224,7 +198,7 @@ def _small(j: Judged) -> CurveWarning | None:
         return None
     share = count / len(j.points)
     text = f"{count} points in small separate parts were left out"
-    return _doubt("small-parts", text, share, j.points[j.left_out], None, _severity(share > levels.LEFT_OUT_SHARE))
+    return doubt("small-parts", text, share, j.points[j.left_out], None, severity(share > levels.LEFT_OUT_SHARE))
 
 
 def _one_sided(j: Judged) -> CurveWarning | None:
@@ -233,14 +207,7 @@ def _one_sided(j: Judged) -> CurveWarning | None:
     if share <= levels.ONE_SIDED_SHARE:
         return None
     text = "{share} of the nodes have points on one side only: what was not seen may be elsewhere"
-    return _doubt("one-sided", text, share, j.graph.nodes[nodes], None, "note")
-
-
-def _turns(j: Judged) -> CurveWarning | None:
-    if not j.side_by_side:
-        return None
-    text = "the points lie along one wire whose turns are side by side; for a surface in rows choose regime tube"
-    return CurveWarning("turns", text, "note", 1.0)
+    return doubt("one-sided", text, share, j.graph.nodes[nodes], None, "note")
 
 
 def _thin(j: Judged) -> CurveWarning | None:
@@ -249,10 +216,10 @@ def _thin(j: Judged) -> CurveWarning | None:
     if share <= levels.THIN_SHARE:
         return None
     text = "{share} of the nodes are thinner than their points tell: their radii are bounds"
-    return _doubt("thin", text, share, j.graph.nodes[thin], None, "note")
+    return doubt("thin", text, share, j.graph.nodes[thin], None, "note")
 
 
 CHECKS: tuple[Callable[[Judged], CurveWarning | None], ...] = (
-    _in_air, _outside, _loops, _open_ends, _contacts, _far, _flat, _no_inside, _short, _bridged, _small, _one_sided,
-    _turns, _thin,
+    _in_air, _outside, _loops, _open_ends, contacts, _far, _flat, _no_inside, _short, _bridged, _small, _one_sided,
+    turns, _thin,
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""What the doubts about a curve are drawn from: the curve, its cloud and the solid inside, as plain data."""
+"""What the doubts about a curve are drawn from: curve, cloud and solid, as plain data; and how a doubt is told."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,7 +7,9 @@ import numpy as np
 
 from tiskel.arrays import TINY, Indices, Mask, Numbers, Points, Table
 from tiskel.geometry.curve import CurveSamples, curve_samples
+from tiskel.geometry.doubt import CurveWarning, Severity, as_places
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.representatives import few_places
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust import levels
 
@@ -75,3 +77,18 @@ class Judged:
     def thick(self) -> Mask:
         """(q,) at which of these places the body is thick enough to speak of inside and outside."""
         return np.asarray(self.sample_radii > levels.THICK * self.spacing)
+
+
+def doubt(
+    code: str, text: str, share: float, places: Points, weight: Numbers | None = None, grave: Severity = "warning"
+) -> CurveWarning:
+    """Return a warning or note with few of its places (p, 3), those of most weight (p,); text may name the {share}."""
+    few = few_places(places, np.ones(len(places)) if weight is None else weight)
+    return CurveWarning(
+        code, text.format(share=f"{share:.0%}" if share >= 0.01 else "less than 1%"), grave, share, as_places(few)
+    )
+
+
+def severity(serious: bool) -> Severity:
+    """Return what a doubt is that is serious or not."""
+    return "warning" if serious else "note"
