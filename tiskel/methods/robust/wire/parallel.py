@@ -24,6 +24,7 @@ from tiskel.methods.robust.wire.links import NEIGHBOURS, Links, linked
 # Found by trial, as those of directions.
 EMPTY = 0.1  # of what is at both sides of it, what the valley holds at most once directions are known [coils to 0.10]
 REACH = 14.0  # usual steps along the wire that a gap in it is wide at most [16 384 points at random: 10]
+ENDS = 0.1  # share of the points that are ends of a wire with gaps, at most [coils 0.001 to 0.05]
 AHEAD = 0.7  # cosine of a direction and the way over a gap, at least
 ABOUT_IT = 2.0  # steps, or widths up to the valley, between a point and the way along its wire: half a turn about it
 ONE = 0.95  # share of the points that are on one wire, at least
@@ -32,12 +33,13 @@ LONG = 4.0  # extents of the cloud that this is long, at least [springs of three
 # Most clouds are nothing of the kind: a few places tell.
 PLACES, ABOUT = 5, 200  # places far from each other, and points about each
 FEWEST = 200  # points of a cloud: fewer say nothing about a distribution
+MOST = 100_000  # points of a cloud: on more, which are not thinned only if that is asked for, wires are resolved
 
 
 def parallel_links(network: Network) -> Links | None:
     """Return the links along a wire whose turns lie side by side, None where a cloud is anything else."""
     points, spacing = network.points, network.spacing
-    if len(points) < FEWEST or not _in_rows(points, network.neighbours):
+    if not FEWEST <= len(points) <= MOST or not _in_rows(points, network.neighbours):
         return None
     near = nearest_neighbours(points, NEIGHBOURS + 1)[0][:, 1:]
     first = voted(points, near)
@@ -82,6 +84,8 @@ def _over_gaps(points: Points, along: Pairs, wires: Wires, spacing: float) -> Pa
     links = linked(points, along)
     piece = connected_components(links.graph, directed=False)[1].astype(np.int32)
     end, out = _ends(points, along, wires, spacing)
+    if len(end) > ENDS * len(points):
+        end, out = end[:0], out[:0]
     close = cKDTree(points[end]).query_pairs(REACH * links.spacing, output_type="ndarray")
     (one, other), (ahead, back) = end[close.T], (out[close[:, 0]], out[close[:, 1]])
     ways = points[other] - points[one]
