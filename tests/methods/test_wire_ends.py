@@ -38,7 +38,7 @@ def lone_spur(length: float, counts: float, radius: float = 0.1) -> ConeCurve:
 
 @pytest.mark.parametrize(
     ("length", "points", "crowd", "ends"),
-    [(4, 10, 10, 2), (4, 30, 10, 3), (7, 10, 10, 3), (4, 1, 0, 3)],
+    [(4, 10, 10, 2), (4, 30, 10, 3), (5, 10, 10, 3), (4, 1, 0, 3)],
     ids=["few points", "as many as elsewhere", "long", "threads"],
 )
 def test_a_short_end_of_few_points_is_noise_where_limbs_have_many(
