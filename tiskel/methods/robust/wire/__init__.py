@@ -44,15 +44,15 @@ SMALLEST_PART = 10  # points; separate parts with fewer get no curve, unless the
 
 def wire_curve(
     network: Network, params: RobustParams, tubes: Indices | None = None, noisy: bool = False,
-    known: Links | None = None,
+    links: Links | None = None,
 ) -> tuple[ConeCurve, Sections, int]:  # fmt: skip
     """Return the curve of a cloud of wires, the sections that its nodes stand for, and how many ends met and are open.
 
     tubes (n,) name the sections of points on limbs that are known, -1 for
-    others; noisy says that points of threads may look like rings; known are
-    the links, where they are.
+    others; noisy says that points of threads may look like rings; links are
+    given where they are known.
     """
-    links = known or links_of(network.points, max(SMALLEST_PART, int(params.least_part * len(network.points))))
+    links = links or links_of(network.points, max(SMALLEST_PART, int(params.least_part * len(network.points))))
     found = _curve(network, links, params, tubes, noisy)
     for _ in range(ROUNDS if network.linear_share > CLEAR else 0):  # one that is parted may show another
         if not (crossings := crossings_of(found[0], links.spacing)):

@@ -15,8 +15,6 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import TINY, Indices, Lists, Pairs, Points, diagonal
 from tiskel.geometry.forest import spanning_links
 from tiskel.geometry.neighbours import nearest_neighbours
-from tiskel.geometry.spacing import NEIGHBOURS as COUNTED
-from tiskel.geometry.spacing import spacings_from
 from tiskel.methods.robust.network import Network
 from tiskel.methods.robust.wire.directions import Wires, beside, beside_mean, refined, valleys, voted
 from tiskel.methods.robust.wire.links import NEIGHBOURS, Links, linked
@@ -39,7 +37,7 @@ MOST = 100_000  # points of a cloud: on more, which are not thinned only if that
 def parallel_links(network: Network) -> Links | None:
     """Return the links along a wire whose turns lie side by side, None where a cloud is anything else."""
     points, spacing = network.points, network.spacing
-    if not FEWEST <= len(points) <= MOST or not _in_rows(points, network.neighbours):
+    if not FEWEST <= len(points) <= MOST or not _in_rows(network):
         return None
     near = nearest_neighbours(points, NEIGHBOURS + 1)[0][:, 1:]
     first = voted(points, near)
@@ -52,8 +50,9 @@ def parallel_links(network: Network) -> Links | None:
     return None
 
 
-def _in_rows(points: Points, neighbours: Lists) -> bool:
+def _in_rows(network: Network) -> bool:
     """Tell whether the points about a few places, as far from each other as may be, lie in rows."""
+    points = network.points
     tree, apart = cKDTree(points), ((points - points.mean(axis=0)) ** 2).sum(axis=1)
     rows: list[Indices] = []
     for _ in range(min(PLACES, -(-len(points) // ABOUT))):
@@ -63,10 +62,9 @@ def _in_rows(points: Points, neighbours: Lists) -> bool:
     chosen = np.unique(np.concatenate(rows))
     name = np.full(len(points), -1, np.int32)
     name[chosen] = np.arange(len(chosen), dtype=np.int32)
-    near = name[neighbours[chosen, 1:]]
+    near = name[network.neighbours[chosen, 1:]]
     some, within = points[chosen], near >= 0
-    squares = ((points[neighbours[chosen]] - some[:, None]) ** 2).sum(axis=2)
-    spacing = max(float(np.median(spacings_from(squares[:, : COUNTED + 1]))), TINY)
+    spacing = max(float(np.median(network.spacings[chosen])), TINY)
     near = np.where(within, near, np.arange(len(chosen), dtype=np.int32)[:, None])  # who is not asked has no vote
     return bool(valleys(beside(some, near, voted(some, near))[within] / spacing))
 
