@@ -84,6 +84,13 @@ def test_a_tree_of_twigs_is_surely_wires() -> None:
     assert surely_wires(prepared(generated(), 14))
 
 
+@pytest.mark.parametrize("seed", [0, 1, 3])
+def test_the_rungs_of_a_coarse_ladder_are_tubes(seed: int) -> None:
+    """Its limbs are a spacing thick, and wires are nearer to the points; they run across the rungs."""
+    s = extract_skeleton(contract(make_shape("ladder", 512, seed=seed)[0]))
+    assert (s.components, s.loops) == (1, 4)
+
+
 @pytest.mark.parametrize("ratio", [2.0, 4.0])
 def test_a_scan_in_lines_is_a_tube(ratio: float) -> None:
     s = skeleton_of(tube(0.3, 3.0, 14, ratio))

@@ -33,6 +33,7 @@ THICKET = 40  # ends of a crown in which loops that no handle confirms are conta
 NET = 10  # meetings, besides two for every other end, from which on wires are a net [ladders to 5, sheets from 54]
 SHEETS = 0.2  # share of nodes on sheets, from which on a body is one [crowns of twigs none, plates of two faces 1]
 SLENDER = 3.0  # spacings: median radius of such limbs, at most
+RUNGS = 2  # loops of tubes with few ends, from which on they are no chance [noisy twigs to 1, coarse ladders 4]
 BETTER = 0.85  # the same of a body with few ends [twigs 0.77, tubes from 0.98]
 
 # What a limb of tubes has to have to be kept among wires, whose crown no tube explains [limbs of scanned and generated
@@ -103,7 +104,10 @@ def shorter(thin: Candidate, thick: Candidate) -> bool:
     """Tell whether wires describe a cloud better than tubes do; strands through a sheet do so, too, and are a net."""
     if thin.curve.loops + thin.meetings > NET + 2 * (thin.curve.ends - thin.meetings):
         return False
-    worse = NO_WORSE if thin.curve.ends >= CROWN else BETTER
+    crown = thin.curve.ends >= CROWN
+    if not crown and thick.curve.loops >= max(RUNGS, thin.curve.loops + 1):  # of coarse tubes, which wires run across
+        return False
+    worse = NO_WORSE if crown else BETTER
     if _unexplained(thin) >= worse * _unexplained(thick):
         return False
     contacts = thick.curve.loops != (thick.solid.handles or 0) and thin.curve.ends >= THICKET and not thin.curve.loops
