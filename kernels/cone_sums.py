@@ -1,7 +1,6 @@
 """Sums of the normal equations of a fit of round cones, edge by edge."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 from .spreading import is_piece, spread
 

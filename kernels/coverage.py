@@ -4,8 +4,7 @@ What a block of points can add is known from its box: where all
 cells that it can fall into are settled already, it is passed over as a whole, and nothing else changes by that.
 """
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 from .spreading import is_piece, spread
 

@@ -6,7 +6,7 @@ flipped. Each flip takes a face into the star of the new vector, so that it ends
 found by walking from the one before; vectors next to each other should come after one another.
 """
 
-import taichi as ti
+from .engine import ti
 
 SAME = 1e-12  # what sticks out by less is a corner already, to rounding; a star about two of one place would fold
 FLAT = 1e-13  # six times the volume of the first four vectors: below, they are in a plane to rounding

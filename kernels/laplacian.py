@@ -1,7 +1,6 @@
 """Ring sizes and cotangent weights."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)

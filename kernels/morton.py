@@ -1,7 +1,6 @@
 """Codes along the Morton curve, where neighbours in the order are mostly neighbours in space."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 
 LEVELS = 20  # bits per axis: a code and the end of the coarsest cell both fit 63 bits

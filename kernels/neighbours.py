@@ -13,8 +13,7 @@ The distance to a box is summed like those to points, and rounding is monotonic:
 what is left out is farther to the last bit.
 """
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 from .spreading import is_piece, spread
 

@@ -1,7 +1,6 @@
 """A function that is blended from quadrics of compact support, with its gradient and Hessian."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 
 Table = ti.types.ndarray(dtype=ti.f64, ndim=2)

@@ -1,7 +1,6 @@
 """Local point reduction: the stage function, the matching of points to merge, and the renaming of rings."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)

@@ -9,8 +9,7 @@ sorted by angle and scanned once (Graham), with the exact sign conditions of
 the in-circle determinant, so no division takes place.
 """
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 
 Points = ti.types.ndarray(dtype=ti.types.vector(3, ti.f64), ndim=1)

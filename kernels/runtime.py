@@ -18,16 +18,13 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
-import taichi as ti
-from taichi.lang import impl, kernel_impl, misc
-from taichi.lang._wrap_inspect import getsourcefile, getsourcelines
-from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
-
+from .engine import ti
 from .errors import TiskelError
 from .folders import make_cache_folder, somewhere
 from .running import started_in
 from .threads import requested_threads
 
+impl, kernel_impl, misc = ti.lang.impl, ti.lang.kernel_impl, ti.lang.misc
 _lock = threading.RLock()
 _F = TypeVar("_F", bound=Callable[..., Any])
 
@@ -94,9 +91,9 @@ def _lay_out_faster() -> None:
     For every node of its source it prepares words that quote that source, wrapped and underlined; a place will do.
     And it looks the source of a function up wherever that is called.
     """
-    ASTTransformerContext.get_pos_info = _place
-    kernel_impl.getsourcelines = functools.cache(getsourcelines)
-    kernel_impl.getsourcefile = functools.cache(getsourcefile)
+    ti.lang.ast.ast_transformer_utils.ASTTransformerContext.get_pos_info = _place
+    kernel_impl.getsourcelines = functools.cache(kernel_impl.getsourcelines)
+    kernel_impl.getsourcefile = functools.cache(kernel_impl.getsourcefile)
 
 
 def _place(context: Any, node: Any) -> str:

@@ -1,7 +1,6 @@
 """Cross-sections of a cloud: which points lie in which slab, and where in its plane, all slabs at once."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 from .spreading import is_piece, spread
 

@@ -4,8 +4,7 @@ Angles are kept as the lowest and the highest of each of BINS sectors, so that t
 where it is wider than a sector.
 """
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 from .slabs import in_slab
 from .spreading import is_piece, spread

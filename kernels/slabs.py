@@ -1,7 +1,6 @@
 """Which points of a cloud lie in which slab, all slabs at once."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 from .spreading import is_piece, spread
 

@@ -5,8 +5,7 @@ What a round of Boruvka's minimum spanning tree asks for. The tree is laid out a
 is passed over; so is one that is not nearer than what is known.
 """
 
-import taichi as ti
-
+from .engine import ti
 from .neighbours import square_of, square_to_box
 from .runtime import started
 

@@ -11,7 +11,7 @@ at every 2^bits-th number:
             piece = number >> bits
 """
 
-import taichi as ti
+from .engine import ti
 
 NUMBERS = 2**14  # 512 for each of 32 threads; to count them with nothing to do takes 10 microseconds
 

@@ -1,8 +1,7 @@
 """The area of the convex hull of the directions in which places see a cloud, many places at once."""
 
-import taichi as ti
-
 from .coverage import CELLS, FACE, SIDE, bit, points_to_pass, square_of
+from .engine import ti
 from .hulls import FLAT, area_of, farthest, first_faces, grown, volume
 from .runtime import started
 from .spreading import is_piece, spread

@@ -1,7 +1,6 @@
 """Homotopic thinning: cubes of a grid taken away one by one, in a given order, without a change of topology."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 
 Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)

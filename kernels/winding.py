@@ -1,7 +1,6 @@
 """Generalised winding numbers of oriented points."""
 
-import taichi as ti
-
+from .engine import ti
 from .runtime import started
 from .spreading import is_piece, spread
 
