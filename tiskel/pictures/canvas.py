@@ -61,6 +61,7 @@ def rendered(figure: Any, kind: str = "png") -> bytes:
         For another kind.
     """
     import matplotlib
+    from matplotlib.backend_bases import get_registered_canvas_class
 
     if kind not in FORMATS:
         raise TiskelError(f"a picture cannot be written as {kind!r}; choose one of {', '.join(FORMATS)}")
@@ -69,9 +70,10 @@ def rendered(figure: Any, kind: str = "png") -> bytes:
     for title in titles:  # names of files and branches may hold dollars and worse
         title.set_parse_math(False)
         title.set_text("\n".join(map(printable, title.get_text().split("\n"))))
-    out = io.BytesIO()
-    with matplotlib.rc_context({"svg.hashsalt": "tiskel"}):
-        figure.savefig(out, format=kind, dpi=DPI, metadata=metadata)
+    figure.set_dpi(DPI)
+    canvas, out = get_registered_canvas_class(kind)(figure), io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": "tiskel"}):  # figure.savefig would lay out and draw all twice
+        getattr(canvas, f"print_{kind}")(out, metadata=metadata)
     return out.getvalue()
 
 
