@@ -35,6 +35,7 @@ def test_the_surface_is_closed_and_looks_outward(
 
 def test_one_seed_finds_all_of_a_torus() -> None:
     found = marched(torus, np.array([[1.3, 0, 0]]), 0.05, 10**6)
+    assert found.whole
     assert solid(found).euler_number == 0
     assert solid(found).volume == pytest.approx(2 * np.pi**2 * 0.09, rel=0.01)
     assert np.abs(torus(found.vertices)).max() < 0.05**2 / 0.3
@@ -48,6 +49,7 @@ def test_another_body_without_seed_is_not_found() -> None:
 def test_a_surface_without_end_ends() -> None:
     found = marched(lambda p: p[:, 2], np.zeros((1, 3)), 0.1, 500)
     assert 0 < len(found.triangles) < 20_000
+    assert not found.whole
 
 
 def test_values_of_exactly_zero_are_outside() -> None:

@@ -160,6 +160,18 @@ def test_the_mesh_is_closed_and_has_the_handles_of_the_body(torus: Surfaces) -> 
     assert len(loaded.faces) == len(mesh.triangles)
 
 
+def test_where_there_is_more_surface_than_expected_triangles_are_longer(
+    torus: Surfaces, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A crown with hardly a patch on its twigs is closed by four times the surface that they have."""
+    usual = body_mesh(whole(torus))
+    monkeypatch.setattr("tiskel.slicing.body_mesh.BEYOND", 0.05)
+    mesh = body_mesh(whole(torus))
+    assert len(mesh.triangles) < 5 * 0.05 * 60_000 < len(usual.triangles)
+    assert mesh.edge == pytest.approx(usual.edge * 2, rel=0.5)
+    assert trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False).is_watertight
+
+
 def test_the_mesh_of_a_y_is_a_ball_where_the_shape_is(y: Surfaces) -> None:
     mesh = body_mesh(whole(y))
     assert trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False).euler_number == 2

@@ -37,10 +37,13 @@ class Found(NamedTuple):
         One on each edge of a tetrahedron that is cut.
     triangles : (q, 3) int32
         Counter-clockwise seen from where the function is positive.
+    whole : bool
+        Whether all of the surface was followed, so that it is closed; not where there were too many cells.
     """
 
     vertices: Points
     triangles: Edges
+    whole: bool = True
 
 
 def marched(values: Callable[[Points], Numbers], seeds: Points, step: float, most: int) -> Found:
@@ -85,7 +88,7 @@ def marched(values: Callable[[Points], Numbers], seeds: Points, step: float, mos
             for face, shift in zip(FACES, SHIFTS, strict=True)
         ]
         cells = np.setdiff1d(distinct(np.concatenate(beside)), done, assume_unique=True)
-    return _triangles(grid, done)
+    return _triangles(grid, done)._replace(whole=not len(cells))
 
 
 class _Grid:

@@ -19,6 +19,8 @@ from tiskel.surfaces.patches import BodySurface
 EDGE = 0.25  # local radii from vertex to vertex: twenty-five around a limb
 THIN = 0.1  # share of the surface that may be thinner than what the grid is made for
 MOST = 60_000  # cells, about 250 000 triangles; the grid is coarser where there would be more
+BEYOND = 1.2  # times as many end the search; more is what closes a body where no patch reaches, not its known surface
+COARSER = 2**0.5  # the step of the next search: half as many cells
 SURE = 0.5  # of a support, from its centre's surface: beyond, the winding number says what is inside
 STEPS, FARTHEST = 4, 0.7  # Newton steps of vertices onto the surface, and how far they go, in steps of the grid
 ROUNDS, SHARE = 3, 0.5  # of evening out, and how much of the way vertices go to the middle of their neighbours
@@ -72,7 +74,7 @@ def body_mesh(body: BodySurface, edge: float | None = None) -> BodyMesh:
         The surface.
     edge : float, optional
         About how long sides of triangles are, in the cloud's unit; not given: a quarter of the local radius of thin
-        parts, or more where there would be half a million triangles. Then twigs beside a trunk may be thinner than
+        parts, or more where there would be over 250 000 triangles. Then twigs beside a trunk may be thinner than
         triangles are long, and not be there: see ``lost``.
 
     Returns
@@ -81,8 +83,11 @@ def body_mesh(body: BodySurface, edge: float | None = None) -> BodyMesh:
     """
     seen = _seen(body)
     step = edge or step_of(body, seen)
-    most = 4 * MOST if edge is None else int(4 * max(MOST, 2 * seen.areas.sum() / edge**2))
-    found = marched(lambda places: _values(body, seen, places, step), body.patches.centres, step, most)
+    most = int(BEYOND * MOST) if edge is None else int(4 * max(MOST, 2 * seen.areas.sum() / edge**2))
+    found = _followed(body, seen, step, most)
+    while edge is None and not found.whole:
+        step *= COARSER
+        found = _followed(body, seen, step, most)
     found = _without_bubbles(body, found)
     vertices = _settled(body, found, step)
     there = np.isfinite(body.level(vertices).value)
@@ -94,6 +99,11 @@ def body_mesh(body: BodySurface, edge: float | None = None) -> BodyMesh:
         vertices, found.triangles, body.trust(vertices), normals=normals, curvatures=curvatures, edge=step,
         lost=float(seen.areas[far].sum() / seen.areas.sum()),
     )  # fmt: skip
+
+
+def _followed(body: BodySurface, seen: OrientedCloud, step: float, most: int) -> Found:
+    """Return the triangles of the surface on a grid of this step."""
+    return marched(lambda places: _values(body, seen, places, step), body.patches.centres, step, most)
 
 
 def mesh_of(surfaces: Surfaces, edge: float | None = None) -> Mesh:
