@@ -12,7 +12,7 @@ from plyfile import PlyData, PlyElement, PlyParseError
 
 from tiskel.arrays import Numbers, Points
 from tiskel.errors import TiskelError
-from tiskel.io.ply_tables import HEADER_END, has_lists, read_tables, surplus
+from tiskel.io.ply_tables import HEADER_END, packed, read_tables, surplus
 from tiskel.io.streams import Bytes
 from tiskel.version import version
 
@@ -110,11 +110,11 @@ def dump(elements: Sequence[PlyElement], stage: str, facts: Mapping[str, Any]) -
     everything = {"format": FORMAT, **facts}
     comments += [f"{key} {json.dumps(value, allow_nan=False)}" for key, value in everything.items()]
     file = PlyData(elements, text=False, byte_order="<", comments=comments)
-    if has_lists(elements):
+    rows = [row for element in elements if (row := packed(element, "<")) is not None]
+    if len(rows) < len(elements):
         out = io.BytesIO()
         file.write(out)
         return out.getvalue()
-    rows = (element.data.astype(element.dtype("<"), copy=False).data for element in elements)
     return b"".join([file.header.encode("ascii"), b"\n", *rows])
 
 

@@ -113,6 +113,35 @@ def _row(element: PlyElement, order: str, data: Bytes, start: int) -> np.dtype[A
     return np.dtype(row)
 
 
+def packed(element: PlyElement, order: str) -> bytes | memoryview | None:
+    """Return the rows of an element as a binary file has them, where lists have one length in all; None if not.
+
+    plyfile writes rows with lists one by one.
+    """
+    if not has_lists([element]):
+        return memoryview(element.data.astype(element.dtype(order), copy=False))
+    kinds: list[tuple[Any, ...]] = []
+    columns: dict[str, Any] = {}
+    for prop in element.properties:
+        column = element.data[prop.name]
+        if not isinstance(prop, PlyListProperty):
+            kinds.append((prop.name, prop.dtype(order)))
+            columns[prop.name] = column
+            continue
+        widths = {len(row) for row in column} or {0}
+        if len(widths) > 1:
+            return None
+        length, values = prop.list_dtype(order)
+        width = widths.pop()
+        kinds += [(prop.name + LENGTH, length), (prop.name, values, (width,))]
+        flat = np.concatenate([*column]) if width else np.zeros(0)
+        columns |= {prop.name + LENGTH: width, prop.name: flat.reshape(element.count, width)}
+    table = np.empty(element.count, np.dtype(kinds))
+    for name, values in columns.items():
+        table[name] = values
+    return table.tobytes()
+
+
 def surplus(ply: PlyData, data: Bytes, rest: bytes) -> str:
     """Return what the file holds beyond the rows of its header, in words; nothing where it is as promised."""
     if ply.text:
