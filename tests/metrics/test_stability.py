@@ -6,6 +6,9 @@ from typing import Literal
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.signal import find_peaks
 
 from reference.fixtures import Load
 from tiskel import (
@@ -20,7 +23,7 @@ from tiskel import (
     shape_graph,
 )
 from tiskel.arrays import Points
-from tiskel.metrics.distributions import distance_from_uniform, distribution, peaks
+from tiskel.metrics.distributions import distance_from_uniform, distribution, peaks, prominences
 from tiskel.metrics.stability import oriented_normals
 from tiskel.pictures.stability import stability_picture
 
@@ -164,6 +167,13 @@ def test_moments_and_peaks() -> None:
     assert peaks(two, (0, 1), replace(PARAMS, prominence=0.2)) == 1  # the lower one holds 100 of 1000 points
     assert peaks(two, (0, 1), replace(PARAMS, prominence=0.5)) == 0
     assert peaks(two[:900], (0, 1), PARAMS) == 1
+
+
+@given(st.lists(st.integers(0, 6), min_size=1, max_size=40))
+def test_prominences_are_those_of_scipy(heights: list[int]) -> None:
+    shares = np.array(heights) / 7
+    expected = find_peaks(np.concatenate([[0], shares, [0]]), prominence=0)[1]["prominences"]
+    np.testing.assert_array_equal(prominences(shares), expected)
 
 
 def test_only_points_that_survive_count_and_documents_hold_no_nan(capsule: Points) -> None:

@@ -1,5 +1,7 @@
 """Barcodes and their distances: exact, and what they say of simple shapes."""
 
+from importlib import import_module
+
 import gudhi.hera
 import numpy as np
 import persim
@@ -45,6 +47,18 @@ def test_bars_are_those_of_the_dense_matrix(name: str) -> None:
     # ripser works in single precision, relative to the coordinates
     tolerance = 1e-6 * max(1.0, np.abs(points).max() if name == "far away" else np.ptp(points, axis=0).max())
     np.testing.assert_allclose(barcode(points).deaths, dense_deaths(points), atol=tolerance)
+
+
+def without_core(name: str) -> object:
+    """Import a module, of a release of ripser whose compiled part is another."""
+    return object() if name == "pyRipser" else import_module(name)
+
+
+@pytest.mark.parametrize("name", ["ball", "plane", "grid", "duplicates", "two"])
+def test_loops_are_those_of_the_module_about_the_compiled_part(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    quick = barcode(CLOUDS[name], loops=True).cycles
+    monkeypatch.setattr("tiskel.metrics.barcode.import_module", without_core)
+    np.testing.assert_array_equal(barcode(CLOUDS[name], loops=True).cycles, quick)
 
 
 @pytest.mark.parametrize("name", CLOUDS)

@@ -6,6 +6,7 @@ close to the Vietoris-Rips complex though not equal to it.
 """
 
 from dataclasses import dataclass
+from importlib import import_module
 from itertools import combinations
 
 import numpy as np
@@ -18,6 +19,7 @@ from tiskel.geometry.distinct import distinct
 from tiskel.geometry.graph import edge_lengths
 from tiskel.geometry.spanning import spanning_tree
 
+PRIME = 2  # of the field of the coefficients: what a loop is does not hang on its direction
 NO_CYCLES: Table = np.zeros((0, 2))
 
 
@@ -75,9 +77,25 @@ def _cycles(points: Points) -> Table:
     edges = delaunay_edges(points)
     lengths = edge_lengths(points, edges)
     distances = sparse.coo_matrix((lengths, (edges[:, 0], edges[:, 1])), shape=(len(points), len(points)))
-    ripser = extra("ripser", "H1").ripser
-    bars = np.asarray(ripser(distances.tocsr(), maxdim=1, distance_matrix=True)["dgms"][1], np.float64)
+    bars = _rips_cycles(distances.tocsr())
     return np.asarray(bars[np.argsort(-bars[:, 1] / bars[:, 0], kind="stable")])
+
+
+def _rips_cycles(distances: sparse.csr_array) -> Table:
+    """Return births and deaths in H1 of a flag complex, from the upper triangle of its distances.
+
+    By the compiled part of ripser alone: the module about it takes a second to import scikit-learn and pandas, for
+    other things. Where a release has that part otherwise, by the module.
+    """
+    edges, count = distances.tocoo(), distances.shape[0]
+    lengths = edges.data.astype(np.float32)
+    try:
+        core = import_module("pyRipser").doRipsFiltrationDMSparse
+        found = core(edges.row.astype(np.int32), edges.col.astype(np.int32), lengths, count, 1, np.inf, PRIME, 0)
+        bars = found["births_and_deaths_by_dim"][1]
+    except (ImportError, AttributeError, TypeError, KeyError):
+        bars = extra("ripser", "H1").ripser(distances, maxdim=1, distance_matrix=True, coeff=PRIME)["dgms"][1]
+    return np.asarray(bars, np.float64).reshape(-1, 2)
 
 
 def delaunay_edges(points: Points) -> Edges:

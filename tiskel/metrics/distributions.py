@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from tiskel.arrays import Numbers
 from tiskel.params import StabilityParams
@@ -39,4 +38,21 @@ def distribution(values: Numbers, kind: str, params: StabilityParams) -> Distrib
 def peaks(values: Numbers, span: tuple[float, float], params: StabilityParams) -> int:
     """Return the number of peaks of the histogram of values (m,): it falls by the prominence on both sides of each."""
     shares = np.histogram(values, params.bins, span)[0] / len(values)
-    return len(find_peaks(np.concatenate([[0], shares, [0]]), prominence=params.prominence)[0])
+    return int((prominences(shares) >= params.prominence).sum())
+
+
+def prominences(heights: Numbers) -> Numbers:
+    """Return how far one has to go down from each peak before it goes up beyond it, or to the end, at zero.
+
+    As scipy.signal has it, which takes a second to be imported; a plateau is one peak.
+    """
+    rim = np.concatenate([[0.0], heights, [0.0]])
+    level = rim[np.concatenate([[True], np.diff(rim) != 0])]
+    rising = np.diff(level) > 0
+    found = []
+    for peak in np.flatnonzero(rising[:-1] & ~rising[1:]) + 1:
+        higher = np.flatnonzero(level > level[peak])
+        before, after = higher[higher < peak], higher[higher > peak]
+        left, right = before.max(initial=-1) + 1, after.min(initial=len(level))
+        found.append(level[peak] - max(level[left:peak].min(), level[peak + 1 : right].min()))
+    return np.array(found)
