@@ -23,6 +23,7 @@ from scipy.spatial import cKDTree
 from tiskel.arrays import Indices, Lists, Mask, Numbers, Points, Table, finite_rows, first_of_duplicates
 from tiskel.geometry.cells import cell_numbers
 from tiskel.geometry.spacing import NEIGHBOURS, SAMPLED, spacing_of, spacings_from
+from tiskel.kernels.threads import requested_threads
 
 # By reasoning: along a wire sampled at random a gap of 8 spacings (16 mean gaps) is there once in ten million points.
 GAP = 8.0  # local spacings, per point of a group, between it and what is around
@@ -127,12 +128,16 @@ def _lonely(points: Points, tree: cKDTree) -> tuple[Indices, Numbers, sparse.coo
     cell = cell_numbers(points, GAP * usual / np.sqrt(3))  # whose diagonal is the shortest gap
     crowded = np.bincount(cell)[cell] >= FEW
     rows, rest = np.flatnonzero(~crowded).astype(np.int32), np.flatnonzero(crowded)
-    distances, neighbours = tree.query(points[rows], FEW + 1)
-    next_to = np.setdiff1d(neighbours, rows)
+    workers = requested_threads()
+    distances, neighbours = tree.query(points[rows], FEW + 1, workers=workers)
+    beside = np.zeros(len(points), bool)
+    beside[neighbours] = True
+    next_to = np.flatnonzero(beside & crowded)
     distances, neighbours = distances[:, : NEIGHBOURS + 1], neighbours[:, : NEIGHBOURS + 1]
     spacings = np.full(len(points), usual)
     spacings[rows] = np.maximum(spacings_from(distances**2), usual)
-    spacings[next_to] = np.maximum(spacings_from(tree.query(points[next_to], NEIGHBOURS + 1)[0] ** 2), usual)
+    apart = tree.query(points[next_to], NEIGHBOURS + 1, workers=workers)[0]
+    spacings[next_to] = np.maximum(spacings_from(apart**2), usual)
     chain = (np.ones(max(len(rest) - 1, 0)), (rest[:-1], rest[1:]))
     links = _links(rows, distances, neighbours, spacings) + sparse.coo_array(chain, shape=(len(points), len(points)))
     group = connected_components(links, directed=False)[1]
