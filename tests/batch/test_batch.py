@@ -149,7 +149,8 @@ def test_shards_together_are_the_whole(scans: Path, plan: Plan, tmp_path: Path) 
 
 
 DRIVER = f"""
-import sys
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a suite in the background hands on that it is ignored
 sys.path[:] = {sys.path!r}
 import json, os
 from pathlib import Path
