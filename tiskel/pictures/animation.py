@@ -8,7 +8,7 @@ import numpy as np
 from tiskel.arrays import Points
 from tiskel.geometry.strays import body_of
 from tiskel.params import LookParams
-from tiskel.pictures.canvas import Sight, dots, framed, new_figure, sight_of, with_axes
+from tiskel.pictures.canvas import Sight, dots, framed, new_figure, rendered, sight_of, with_axes
 from tiskel.pictures.rolling import facing, way
 from tiskel.pictures.style import CURVE, INK, SIZES, colour_of
 from tiskel.rolling.sphere import rotation_of
@@ -82,9 +82,7 @@ def _frames(surface: FittedSurface | BodySurface, run: Trajectory, look: LookPar
         with_axes(panel, sight)
         framed(panel, sight, room)
         panel.set_title(f"t = {run.t[row]:.2f} s, {sight.view.name}", fontsize=SIZES["head"])
-        out = io.BytesIO()
-        figure.savefig(out, format="png", dpi=DPI, metadata={"Software": None})
-        pictures.append(out.getvalue())
+        pictures.append(rendered(figure, dpi=DPI))
     return pictures
 
 

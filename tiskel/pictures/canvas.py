@@ -45,7 +45,7 @@ def _load() -> None:
             matplotlib.rcParams["backend"] = asked
 
 
-def rendered(figure: Any, kind: str = "png") -> bytes:
+def rendered(figure: Any, kind: str = "png", dpi: int = DPI) -> bytes:
     """Return the bytes of a figure: the same bytes for the same figure.
 
     Parameters
@@ -54,6 +54,8 @@ def rendered(figure: Any, kind: str = "png") -> bytes:
         What is drawn.
     kind : "png", "svg" or "pdf"
         The format.
+    dpi : int
+        Pixels to an inch, of PNG and of what is an image in the others.
 
     Raises
     ------
@@ -70,7 +72,7 @@ def rendered(figure: Any, kind: str = "png") -> bytes:
     for title in titles:  # names of files and branches may hold dollars and worse
         title.set_parse_math(False)
         title.set_text("\n".join(map(printable, title.get_text().split("\n"))))
-    figure.set_dpi(DPI)
+    figure.set_dpi(dpi)
     canvas, out = get_registered_canvas_class(kind)(figure), io.BytesIO()
     with matplotlib.rc_context({"svg.hashsalt": "tiskel"}):  # figure.savefig would lay out and draw all twice
         getattr(canvas, f"print_{kind}")(out, metadata=metadata)
