@@ -144,7 +144,7 @@ def make_subject(
     whole = given[finite_rows(given)]
     first = first_of_duplicates(whole) if len(whole) else np.zeros(0, np.int32)
     stray = stray_points(whole, first)
-    distinct = np.ascontiguousarray(whole[np.unique(first[~stray])])
+    distinct = np.ascontiguousarray(whole[(first == np.arange(len(first))) & ~stray])  # duplicates are stray together
     check_solid(distinct)
     frame = normalisation(distinct, kind)
     warnings = [f"{len(given) - len(whole)} rows of the cloud with NaN or Inf were dropped"] * (len(given) > len(whole))
