@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
+from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError, PlyProperty
 
 from tiskel.arrays import within_runs
 from tiskel.io.streams import Bytes
@@ -101,16 +101,23 @@ def _row(element: PlyElement, order: str, data: Bytes, start: int) -> np.dtype[A
         return None
     row: list[tuple[Any, ...]] = []
     for prop in element.properties:
-        if not isinstance(prop, PlyListProperty):
-            row.append((prop.name, prop.dtype(order)))
-            continue
-        kind, values = prop.list_dtype(order)
-        at = start + np.dtype(row).itemsize
-        length = np.frombuffer(data[at : at + np.dtype(kind).itemsize], kind)
-        if len(length) == 0 or not 1 <= length[0] <= CORNERS:
-            return None
-        row += [(prop.name + LENGTH, kind), (prop.name, values, (int(length[0]),))]
+        width = 0
+        if isinstance(prop, PlyListProperty):
+            kind, at = np.dtype(prop.list_dtype(order)[0]), start + np.dtype(row).itemsize
+            length = np.frombuffer(data[at : at + kind.itemsize], kind)
+            if len(length) == 0 or not 1 <= length[0] <= CORNERS:
+                return None
+            width = int(length[0])
+        row += _fields(prop, order, width)
     return np.dtype(row)
+
+
+def _fields(prop: PlyProperty, order: str, width: int) -> list[tuple[Any, ...]]:
+    """Return the fields of a property in the type of a row, a list's with so many values."""
+    if not isinstance(prop, PlyListProperty):
+        return [(prop.name, prop.dtype(order))]
+    length, values = prop.list_dtype(order)
+    return [(prop.name + LENGTH, length), (prop.name, values, (width,))]
 
 
 def packed(element: PlyElement, order: str) -> bytes | memoryview | None:
@@ -120,25 +127,22 @@ def packed(element: PlyElement, order: str) -> bytes | memoryview | None:
     """
     if not has_lists([element]):
         return memoryview(element.data.astype(element.dtype(order), copy=False))
-    kinds: list[tuple[Any, ...]] = []
-    columns: dict[str, Any] = {}
+    row: list[tuple[Any, ...]] = []
+    columns: list[Any] = []
     for prop in element.properties:
-        column = element.data[prop.name]
-        if not isinstance(prop, PlyListProperty):
-            kinds.append((prop.name, prop.dtype(order)))
-            columns[prop.name] = column
-            continue
-        widths = {len(row) for row in column} or {0}
-        if len(widths) > 1:
-            return None
-        length, values = prop.list_dtype(order)
-        width = widths.pop()
-        kinds += [(prop.name + LENGTH, length), (prop.name, values, (width,))]
-        flat = np.concatenate([*column]) if width else np.zeros(0)
-        columns |= {prop.name + LENGTH: width, prop.name: flat.reshape(element.count, width)}
-    table = np.empty(element.count, np.dtype(kinds))
-    for name, values in columns.items():
-        table[name] = values
+        column, width = element.data[prop.name], 0
+        if isinstance(prop, PlyListProperty):
+            widths = {len(values) for values in column} or {0}
+            if len(widths) > 1:
+                return None
+            width = widths.pop()
+            columns.append(width)
+            column = np.concatenate([*column]).reshape(-1, width) if width else np.zeros((element.count, 0))
+        row += _fields(prop, order, width)
+        columns.append(column)
+    table = np.empty(element.count, row)
+    for (name, *_), column in zip(row, columns, strict=True):
+        table[name] = column
     return table.tobytes()
 
 
