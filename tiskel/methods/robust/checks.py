@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tiskel.arrays import Numbers, Points
+from tiskel.arrays import TINY, Numbers, Points
 from tiskel.geometry.body import shares_of_depth
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.radius import RadiusSource
@@ -27,6 +27,7 @@ OFF_MIDDLE = 0.7  # of the depth that the body has across the curve; places less
 THIN = 2.0  # spacings in a radius; thinner places say nothing of inside and outside [0, 1]
 UNSURE = 0.05  # misfit that a loop over a gap is worth where the body has no handle [0, 0; for patches]
 FAR = 0.35  # local radii; points further from the cones count against a curve [1, 2]
+FARTHEST = 3.0  # spacings; points that are further from the cones are no noise, and count as so far
 NO_LESS = 0.5  # spacings; what a bound is at least: of limbs thinner than that the points cannot tell how thin they are
 SPARSE = 1.5  # spacings in a radius; thinner nodes have too few points [0, 0; what radii are called]
 
@@ -121,6 +122,12 @@ class Candidate:
         outside = (self.winding < OUTSIDE_SCORE) & thick
         far = np.abs(self.fit.residual) > np.maximum(FAR * self.fit.radii, spacing)
         return off + float(outside.mean()) + (float(far.mean()) if len(far) else 0.0)
+
+    @property
+    def beside(self) -> float:
+        """How far points are from the cones, root mean square, in spacings, each as far as is told at most."""
+        off = np.minimum(np.abs(self.fit.residual) / max(self.network.spacing, TINY), FARTHEST)
+        return float(np.sqrt((off**2).mean())) if len(off) else 0.0
 
     @cached_property
     def off_middle(self) -> float:

@@ -7,7 +7,7 @@ from tiskel.arrays import Indices
 from tiskel.geometry.doubt import CurveWarning
 from tiskel.geometry.graph import CurveGraph
 from tiskel.geometry.regime import Regime
-from tiskel.geometry.ways import steps_of, ways_from
+from tiskel.geometry.ways import on_loops, steps_of, ways_from
 from tiskel.methods.robust import levels
 from tiskel.methods.robust.judged import Judged, doubt, severity
 
@@ -35,11 +35,15 @@ def contacts(j: Judged) -> CurveWarning | None:
     if wires and graph.loops >= levels.NET and (each := graph.length / graph.loops / j.spacing) < levels.MESH:
         text = f"{graph.loops} loops of wire, one for {each:.0f} spacings of it: wires side by side may run together"
         return CurveWarning("contacts", text, share=1.0)
+    if graph.ends >= levels.CROWN and 0 < graph.loops <= levels.SELDOM * graph.ends:
+        text = f"{graph.loops} loops in a crown of {graph.ends} ends: limbs that touch may run together"
+        return doubt("contacts", text, graph.loops / graph.ends, graph.nodes[on_loops(graph)])
     ends = touching_ends(graph, j.spacing)
     if j.side_by_side or not len(ends) or (share := len(ends) / graph.ends) <= levels.CONTACTS:
         return None
     text = f"{len(ends)} of {graph.ends} ends lie at another part of the curve: which limbs go on there is a guess"
-    return doubt("contacts", text, share, graph.nodes[ends], None, severity(share > levels.CONTACTS_SERIOUS))
+    serious = share > levels.CONTACTS_SERIOUS and j.beside > levels.NOISY
+    return doubt("contacts", text, share, graph.nodes[ends], None, severity(serious))
 
 
 def turns(j: Judged) -> CurveWarning | None:

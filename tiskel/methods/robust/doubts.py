@@ -7,14 +7,15 @@ code            severity what
 ``outside``     warning  curve outside the body, as ``tiskel metrics`` counts it
 ``loops``       warning  the body has more or fewer handles than the curve has loops
 ``open-ends``   warning  ends without a cap that look at another part of the curve: a gap left open; a note if few do
-``contacts``    note     ends that lie at another part of the curve; a warning where they are many
+``contacts``    note     ends that lie at another part of the curve; a warning where they are many and points noisy,
+                         and of loops in a crown
 ``far``         warning  points far from the curve: a part without a branch
 ``flat``        warning  cones in a body whose normals hardly turn; a note where it is long, or told to be a sheet
 ``no-inside``   warning  smooth tubes whose normals tell no inside: limbs side by side may be taken for one
 ``short``       warning  the body is hardly longer than thick
 ``bridged``     note     gaps crossed by straight lines; a warning where they are much of the curve
 ``small-parts`` note     points left out in small parts; a warning where they are many
-``one-sided``   note     seen from one side: the curve is on what was seen
+``one-sided``   note     seen from one side: the curve is on what was seen; a warning where all of it is a guess
 ``turns``       note     the cloud is taken for one wire whose turns lie side by side, not for a surface in rows
 ``thin``        note     radii are bounds, the body is thinner than its points tell
 =============== ======== ==========================================================================
@@ -41,7 +42,7 @@ from tiskel.methods.robust import levels
 from tiskel.methods.robust.contacts import contacts, turns
 from tiskel.methods.robust.judged import Judged, doubt, severity
 from tiskel.methods.robust.openings import open_ends_in_sight
-from tiskel.methods.robust.turning import flat_points, one_sided_nodes, roughness
+from tiskel.methods.robust.turning import ONE_SIDE, empty_turns, flat_points, roughness
 
 AIR = "{share} of the curve is in the air: neither at the points nor between them"
 
@@ -165,9 +166,10 @@ def _flat(j: Judged) -> CurveWarning | None:
 
 def _no_inside(j: Judged) -> CurveWarning | None:
     tubes = (j.graph.regimes == Regime.TUBE) & (j.graph.radii > levels.THICK * j.spacing)
-    if j.solid.trusted or tubes.mean() < levels.TUBES or roughness(j.points, j.normals, j.spacings) > levels.ROUGH:
-        return None
     share = 1 - j.solid.oriented.consistency
+    inside = j.solid.trusted and (j.meshed or 1 - share > levels.INSIDE)
+    if inside or tubes.mean() < levels.TUBES or roughness(j.points, j.normals, j.spacings) > levels.ROUGH:
+        return None
     text = f"{share:.0%} of the points have no inside behind them: limbs side by side may be taken for one"
     return CurveWarning("no-inside", text + ", or one side was not seen", share=share)
 
@@ -202,7 +204,13 @@ def _small(j: Judged) -> CurveWarning | None:
 
 
 def _one_sided(j: Judged) -> CurveWarning | None:
-    nodes = one_sided_nodes(j.graph, j.points, j.node_of_point) | (j.graph.regimes == Regime.SHEET)
+    sheet, empty = j.graph.regimes == Regime.SHEET, empty_turns(j.graph, j.points, j.node_of_point)
+    tubes = (j.graph.regimes == Regime.TUBE) & (j.graph.radii > levels.THICK * j.spacing) & (empty > levels.EMPTY)
+    share = j.share_at(tubes)
+    if share > levels.EMPTY_SHARE:
+        text = "{share} of the curve has no points about a third of its turn: its middle is a guess from what was seen"
+        return doubt("one-sided", text, share, j.graph.nodes[tubes])
+    nodes = (empty >= ONE_SIDE) | sheet
     share = float(nodes.mean())
     if share <= levels.ONE_SIDED_SHARE:
         return None

@@ -124,6 +124,8 @@ def _translated(best: Candidate, trace: Trace, network: Network) -> MethodCurve:
         left_out=left_out,
         solid=best.solid,
         axes=network.axes,
+        beside=best.beside,
+        meshed=network.surface is not None,
         side_by_side=best.side_by_side,
     )
     return MethodCurve(graph, node[trace.survivor_of()], contracted, (*doubts_of(judged), *told(trace)))

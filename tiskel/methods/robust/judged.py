@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from tiskel.arrays import TINY, Indices, Mask, Numbers, Points, Table
 from tiskel.geometry.curve import CurveSamples, curve_samples
 from tiskel.geometry.doubt import CurveWarning, Severity, as_places
 from tiskel.geometry.graph import CurveGraph
+from tiskel.geometry.regime import Regime
 from tiskel.geometry.representatives import few_places
 from tiskel.geometry.solid import Solid
 from tiskel.methods.robust import levels
@@ -38,6 +40,10 @@ class Judged:
         The body inside the cloud, trusted or not.
     axes : (3, 3) float64
         Of the solid, as rows: its coordinates are those of the curve @ axes.T.
+    beside : float
+        How far points lie from the cones of the curve, root mean square, in spacings.
+    meshed : bool
+        Whether the points lie on a known mesh: parts of it that overlap have an inside on both sides.
     side_by_side : bool
         Whether the cloud is taken for one wire whose turns lie side by side.
     """
@@ -51,6 +57,8 @@ class Judged:
     left_out: Mask
     solid: Solid
     axes: Table
+    beside: float = 0.0
+    meshed: bool = False
     side_by_side: bool = False
 
     @cached_property
@@ -62,6 +70,10 @@ class Judged:
     def bridged_share(self) -> float:
         """The share of the curve's length that leads over gaps."""
         return float(self.graph.lengths[self.graph.bridged].sum()) / max(self.graph.length, TINY)
+
+    def share_at(self, nodes: Mask) -> float:
+        """Return the share of the curve's length at some of its nodes (v,), half of each edge at either end."""
+        return float((self.graph.lengths * nodes[self.graph.edges].mean(axis=1)).sum()) / max(self.graph.length, TINY)
 
     @cached_property
     def samples(self) -> CurveSamples:
@@ -75,8 +87,10 @@ class Judged:
 
     @cached_property
     def thick(self) -> Mask:
-        """(q,) at which of these places the body is thick enough to speak of inside and outside."""
-        return np.asarray(self.sample_radii > levels.THICK * self.spacing)
+        """(q,) at which of these places the body is thick enough to speak of inside and outside; no sheet is."""
+        spacings = np.maximum(self.spacings[cKDTree(self.points).query(self.samples.points)[1]], self.spacing)
+        sheet = (self.graph.regimes == Regime.SHEET)[self.graph.edges[self.samples.edges]].all(axis=1)
+        return np.asarray((self.sample_radii > levels.THICK * spacings) & ~sheet)
 
 
 def doubt(

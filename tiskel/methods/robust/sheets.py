@@ -12,6 +12,7 @@ a node that stands between it and its points: no body can be where it saw throug
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
 from tiskel.geometry.regime import Regime
@@ -28,6 +29,9 @@ CIRCLE = 0.97  # of the variance of the points' depth that a circle explains; of
 MIDDLE = 0.9  # of a node's points, the middle by angle, that count: noise beside an arc does not widen it
 FEWEST = 6  # points that tell the turn
 NEAREST = 6  # points whose mean is the place on the sheet
+WALL = 0.5  # half widths that a sheet is thick at most, for both its faces to be seen
+BESIDE = 2.0  # spacings beside the way through a sheet, within which its faces are looked for
+EVENED = 4  # rounds in which nodes between two others go half the way to the mean of these
 WIDTH = 0.9  # quantile of the distance of its points across the curve: half the width
 BEHIND = 0.9  # share of a node's points beyond it, from a known sensor, from which on the sensor saw through its place
 
@@ -45,7 +49,7 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
         sheet |= _seen_through(points, offset, owner, len(curve.nodes), found.network.placed(seen_from))
     if not sheet.any():
         return found
-    nodes, radii = _middles(curve, points, owner, offset, np.flatnonzero(sheet).astype(np.int32))
+    nodes, radii = _middles(found, offset, np.flatnonzero(sheet).astype(np.int32))
     regimes = np.where(sheet, Regime.SHEET, Regime.TUBE).astype(np.uint8)
     laid = replace(curve, nodes=nodes, radii=radii, regimes=regimes)
     laid = without_tight_cycles(laid)
@@ -125,20 +129,39 @@ def _seen_through(points: Points, offset: Points, owner: Indices, count: int, se
     return np.asarray(enough & (_turns(offset, owner, count) < np.pi))
 
 
-def _middles(
-    curve: ConeCurve, points: Points, owner: Indices, offset: Points, sheets: Indices
-) -> tuple[Points, Numbers]:
-    """Return all nodes and radii, those of sheets in the middle of their points on the sheet, and half their width."""
+def _middles(found: Candidate, offset: Points, sheets: Indices) -> tuple[Points, Numbers]:
+    """Return all nodes and radii, those of sheets in the middle of their points on the sheet, and half their width.
+
+    Between two others they are evened: what points are a node's was found with a curve that bends to and fro.
+    """
+    curve, owner = found.curve, found.fit.nodes
     nodes, radii = curve.nodes.copy(), curve.radii.copy()
     order = np.argsort(owner, kind="stable")
     stops = np.searchsorted(owner[order], np.arange(len(nodes) + 1))
-    for node in sheets.tolist():
-        rows = order[stops[node] : stops[node + 1]]
-        if not len(rows):
-            continue
-        middle = curve.nodes[node] + offset[rows].mean(axis=0)
-        nearest = np.argsort(((points[rows] - middle) ** 2).sum(axis=1), kind="stable")[:NEAREST]
-        nodes[node] = points[rows[nearest]].mean(axis=0)
-        width = np.linalg.norm(offset[rows] - (nodes[node] - curve.nodes[node]), axis=1)
-        radii[node] = max(float(np.quantile(width, WIDTH)), TINY)
-    return nodes, radii
+    own = {node: rows for node in sheets.tolist() if len(rows := order[stops[node] : stops[node + 1]])}
+    for node, rows in own.items():
+        middle = offset[rows].mean(axis=0)
+        nodes[node] = curve.nodes[node] + middle
+        radii[node] = max(float(np.quantile(np.linalg.norm(offset[rows] - middle, axis=1), WIDTH)), TINY)
+    inner = sheets[curve.degrees[sheets] == 2]
+    for _ in range(EVENED):
+        nodes[inner] = ((nodes + curve.averaging @ nodes) / 2)[inner]
+    return _laid(found, nodes, radii, sheets), radii
+
+
+def _laid(found: Candidate, nodes: Points, radii: Numbers, sheets: Indices) -> Points:
+    """Return the nodes, those of sheets at the nearest points, or between both faces of it where both were seen."""
+    points, normals, spacing = found.network.points, found.network.normals, found.network.spacing
+    tree, out = cKDTree(points), nodes.copy()
+    nearest = np.reshape(tree.query(nodes[sheets], k=min(NEAREST, len(points)))[1], (len(sheets), -1))
+    for node, rows in zip(sheets.tolist(), nearest, strict=True):
+        place = points[rows].mean(axis=0)
+        across = np.linalg.eigh(normals[rows].T @ normals[rows])[1][:, -1]
+        about = np.array(tree.query_ball_point(place, WALL * radii[node], return_sorted=True), np.int32)
+        offset = points[about] - place
+        height = offset @ across
+        beside = ((offset**2).sum(axis=1) - height**2) < (BESIDE * spacing) ** 2
+        if beside.any():
+            place += across * (height[beside].min() + height[beside].max()) / 2
+        out[node] = place
+    return np.asarray(out)

@@ -42,8 +42,8 @@ def flat_points(graph: CurveGraph, normals: Points, node_of_point: Indices, flat
     return np.asarray((told & (second < flat * most))[node_of_point])
 
 
-def one_sided_nodes(graph: CurveGraph, points: Points, node_of_point: Indices) -> Mask:
-    """Tell about which nodes the points leave 200 degrees of the turn about the curve empty.
+def empty_turns(graph: CurveGraph, points: Points, node_of_point: Indices) -> Numbers:
+    """Return how much of the turn about each node the points leave empty, in one piece.
 
     Parameters
     ----------
@@ -56,8 +56,8 @@ def one_sided_nodes(graph: CurveGraph, points: Points, node_of_point: Indices) -
 
     Returns
     -------
-    (v,) bool
-        False at joints, which have no direction, and at nodes with fewer than 8 points.
+    (v,) float64
+        Radians; 0 at joints, which have no direction, and at nodes with fewer than 8 points.
     """
     tangents = vertex_tangents(graph)
     for side in (0, 1):  # ends look along their only edge
@@ -67,8 +67,9 @@ def one_sided_nodes(graph: CurveGraph, points: Points, node_of_point: Indices) -
     counts = np.bincount(node_of_point, minlength=len(graph.nodes))
     told = tangents.any(axis=1) & (counts >= FEWEST)
     rows = np.flatnonzero(told[node_of_point])
+    found = np.zeros(len(told))
     if len(rows) == 0:
-        return told
+        return found
     node = node_of_point[rows]
     frames = np.zeros((len(graph.nodes), 2, 3))
     frames[told] = across(tangents[told])
@@ -80,9 +81,7 @@ def one_sided_nodes(graph: CurveGraph, points: Points, node_of_point: Indices) -
     following = np.append(angle[1:], 0.0)
     last = np.append(first[1:] - 1, len(node) - 1)
     following[last] = angle[first] + 2 * np.pi
-    widest = np.maximum.reduceat(following - angle, first)
-    found = np.zeros(len(told), np.bool_)
-    found[node[first]] = widest >= ONE_SIDE
+    found[node[first]] = np.maximum.reduceat(following - angle, first)
     return found
 
 

@@ -13,6 +13,7 @@ from tiskel.geometry.thinning import thinned
 from tiskel.methods.robust.body.centres import centred, not_round
 from tiskel.methods.robust.body.limbs import without_corners, zipped
 from tiskel.methods.robust.body.strands import evened, strands_of, with_sections
+from tiskel.methods.robust.body.wide import middle_lines
 from tiskel.methods.robust.branches import with_tips, without_contained_ends, without_explained_branches
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.curve import ConeCurve
@@ -34,7 +35,7 @@ def body_curve(network: Network, solid: Solid, params: RobustParams) -> Candidat
         return None
     curve = _thinned(body)
     curve = merged_junctions(evened(zipped(curve, body), body), params.merge_junctions)
-    curve, sections = with_sections(centred(curve, body), body, network)
+    curve, sections = with_sections(middle_lines(centred(curve, body), body), body, network)
 
     def fit(curve: ConeCurve, rounds: int) -> ConeFit:
         still = not_round(curve, body)

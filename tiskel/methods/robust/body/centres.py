@@ -15,21 +15,24 @@ RAYS = 16  # directions across the curve
 REACH = 6.0  # clearances that a ray reaches at most: a section that is wider is no section of one limb
 CLOSED = 0.85  # share of the rays that get to the surface, at least
 WIDE = 1.6  # of the shortest ray, that rays are long in the mean, from which on a section is not round about a node
-PLACES = 36  # where a ray is probed
+PLACES = 6  # where a ray is probed, on each clearance of its reach
 FURTHEST = 0.5  # clearances that a node moves in a round at most
 KEPT = 0.9  # of the clearance, that a move leaves at least
 TURN = np.arange(RAYS) * (2 * np.pi / RAYS)
 
 
-def centred(curve: ConeCurve, body: Body) -> ConeCurve:
-    """Return the curve evened, and its nodes between two others in the middle of the body's section there."""
+def centred(curve: ConeCurve, body: Body, reach: float = REACH) -> ConeCurve:
+    """Return the curve evened, and its nodes between two others in the middle of the body's section there.
+
+    reach is how many clearances rays across the curve reach at most.
+    """
     triples = curve.passages
-    triples = triples[_free(curve, triples[:, 1])]
+    triples = triples[free(curve, triples[:, 1])]
     nodes, inner = curve.nodes, curve.degrees > 1
     for _ in range(ROUNDS):
         nodes = _kept(nodes, np.where(inner[:, None], (nodes + curve.averaging @ nodes) / 2, nodes), body)
         middles = nodes.copy()
-        middles[triples[:, 1]] = _section(nodes, triples, body)[0]
+        middles[triples[:, 1]] = _section(nodes, triples, body, reach)[0]
         nodes = _kept(nodes, middles, body)
     radii = np.where(inner, np.maximum(body.clearance_at(nodes), body.step / 2), curve.radii)
     return replace(curve, nodes=nodes, radii=radii)
@@ -40,11 +43,11 @@ def not_round(curve: ConeCurve, body: Body) -> Mask:
     triples = curve.passages
     rows = triples[:, 1]
     out = curve.degrees > 2
-    out[rows] = ~_free(curve, rows) | (_section(curve.nodes, triples, body)[1] > WIDE)
+    out[rows] = ~free(curve, rows) | (_section(curve.nodes, triples, body, REACH)[1] > WIDE)
     return out
 
 
-def _free(curve: ConeCurve, rows: Indices) -> Mask:
+def free(curve: ConeCurve, rows: Indices) -> Mask:
     """Return which nodes are outside the balls of the joints, where sections are those of more than one limb."""
     joints = np.flatnonzero(curve.degrees > 2)
     away = np.linalg.norm(curve.nodes[rows, None] - curve.nodes[joints], axis=2) - curve.radii[joints]
@@ -60,35 +63,40 @@ def _kept(nodes: Points, moved: Points, body: Body) -> Points:
     return np.asarray(nodes + np.where(good[:, None], move, 0))
 
 
-def _section(nodes: Points, triples: Lists, body: Body) -> tuple[Points, Numbers]:
+def _section(nodes: Points, triples: Lists, body: Body, reach: float) -> tuple[Points, Numbers]:
     """Return the centroid (t, 3) of what is seen of the body's section about the middle one of three nodes.
 
     And how long rays to its surface are in the mean, in the shortest. Where too
     many rays do not get there, the node stays where it is.
     """
-    before, here, after = nodes[triples.T]
-    directions = unit(after - before)
-    u = unit(np.cross(directions, np.eye(3)[np.abs(directions).argmin(axis=1)]))
-    v = np.cross(directions, u)
-    rays = np.cos(TURN)[:, None] * u[:, None] + np.sin(TURN)[:, None] * v[:, None]  # (q, RAYS, 3)
-    length, ends = _lengths(here, rays, body)
+    rays, length, ends = rays_across(nodes, triples, body, reach)
     weight = np.maximum((length**2).sum(axis=1), TINY)
     move = (2 / 3) * ((length**3)[..., None] * rays).sum(axis=1) / weight[:, None]
     closed = ends.mean(axis=1) > CLOSED
     wide = length.mean(axis=1) / np.maximum(length.min(axis=1), TINY)
-    return here + np.where(closed[:, None], move, 0), wide
+    return nodes[triples[:, 1]] + np.where(closed[:, None], move, 0), wide
 
 
-def _lengths(places: Points, rays: Stack, body: Body) -> tuple[Table, Masks]:
-    """Return (q, r) how far it is along rays (q, r, 3) to the surface, and which get there."""
-    far = np.maximum(REACH * body.clearance_at(places), 2 * body.step)
-    share = np.arange(1, PLACES + 1) / PLACES
+def rays_across(nodes: Points, triples: Lists, body: Body, reach: float) -> tuple[Stack, Table, Masks]:
+    """Return rays (t, RAYS, 3) across the curve about the middle ones of three nodes, how long, and which end."""
+    before, here, after = nodes[triples.T]
+    directions = unit(after - before)
+    u = unit(np.cross(directions, np.eye(3)[np.abs(directions).argmin(axis=1)]))
+    v = np.cross(directions, u)
+    rays = np.cos(TURN)[:, None] * u[:, None] + np.sin(TURN)[:, None] * v[:, None]
+    return rays, *ray_lengths(here, rays, body, reach)
+
+
+def ray_lengths(places: Points, rays: Stack, body: Body, reach: float) -> tuple[Table, Masks]:
+    """Return (q, r) how far it is along rays (q, r, 3) to the surface, and which get there within reach clearances."""
+    far, count = np.maximum(reach * body.clearance_at(places), 2 * body.step), round(reach * PLACES)
+    share = np.arange(1, count + 1) / count
     way = far[:, None] * share
     probes = places[:, None, None] + rays[:, :, None] * way[:, None, :, None]
-    depth = body.winding_at(probes.reshape(-1, 3)).reshape(*rays.shape[:2], PLACES)
+    depth = body.winding_at(probes.reshape(-1, 3)).reshape(*rays.shape[:2], count)
     out = depth < body.level
     ends = out.any(axis=2)
-    first = np.where(ends, out.argmax(axis=2), PLACES - 1)[..., None]
+    first = np.where(ends, out.argmax(axis=2), count - 1)[..., None]
     after, before = (np.take_along_axis(depth, np.maximum(first - back, 0), axis=2)[..., 0] for back in (0, 1))
     back = np.clip((body.level - after) / np.maximum(before - after, TINY), 0, 1) * ends
-    return np.asarray((first[..., 0] + 1 - back) / PLACES * far[:, None]), np.asarray(ends)
+    return np.asarray((first[..., 0] + 1 - back) / count * far[:, None]), np.asarray(ends)

@@ -70,13 +70,13 @@ def plain_curve(nodes: Points, edges: Edges, radii: Numbers) -> ConeCurve:
     )  # fmt: skip
 
 
-def evened(curve: ConeCurve, body: Body) -> ConeCurve:
-    """Return the curve without the steps of the grid, its nodes a part of their radius apart."""
+def evened(curve: ConeCurve, body: Body, sizes: Numbers | None = None) -> ConeCurve:
+    """Return the curve without the steps of the grid, nodes a part of their radius apart, or of other sizes (v,)."""
     nodes, degree = curve.nodes, curve.degrees
     for _ in range(EVENED):
         nodes = np.where((degree > 1)[:, None], (nodes + curve.averaging @ nodes) / 2, nodes)
-    curve = replace(curve, nodes=nodes)
-    links = [link for branch in curve.branches for link in _links(curve, branch, APART_CELLS * body.step)]
+    curve, sizes = replace(curve, nodes=nodes), curve.radii if sizes is None else sizes
+    links = [link for branch in curve.branches for link in _links(curve, branch, sizes, APART_CELLS * body.step)]
     edges = np.array(links, np.int32).reshape(-1, 2)
     kept = np.union1d(edges.ravel(), np.flatnonzero(degree == 0))
     name = np.full(len(nodes), -1, np.int32)
@@ -85,9 +85,9 @@ def evened(curve: ConeCurve, body: Body) -> ConeCurve:
     return plain_curve(nodes[kept], name[edges], radii)
 
 
-def _links(curve: ConeCurve, branch: Indices, least: float) -> list[tuple[int, int]]:
+def _links(curve: ConeCurve, branch: Indices, sizes: Numbers, least: float) -> list[tuple[int, int]]:
     """Return edges between some nodes of a branch; three at least of a ring."""
-    way, wanted = curve.along(branch), np.maximum(APART * curve.radii[branch], least)
+    way, wanted = curve.along(branch), np.maximum(APART * sizes[branch], least)
     share = np.concatenate([[0.0], np.cumsum(np.diff(way) * 2 / (wanted[1:] + wanted[:-1]))])
     parts = max(3 if branch[0] == branch[-1] else 2, int(np.round(share[-1])))
     chosen = np.unique([int(np.abs(share - share[-1] * k / parts).argmin()) for k in range(parts + 1)])
