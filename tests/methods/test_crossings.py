@@ -48,6 +48,16 @@ def test_wires_that_pass_two_spacings_apart_are_two(gap: float, angle: float) ->
         assert (s.components, s.loops, s.ends) == (2, 0, 4)
 
 
+@pytest.mark.parametrize("hidden", [2.5, 4.0])
+def test_a_wire_that_is_not_seen_where_another_passes_it_is_one(hidden: float) -> None:
+    """Half a gap, in spacings; links lead over it by way of the other wire alone, and go with the crossing."""
+    for seed in range(3):
+        points = crossed(2, 90, seed)
+        gone = (np.abs(points[:, 0]) < hidden * 4 / 1200) & (np.abs(points[:, 1]) < 2 / 1200)
+        s = skeleton_of(points[~gone])
+        assert (s.components, s.loops, s.ends) == (2, 0, 4)
+
+
 def test_wires_that_meet_are_one() -> None:
     for seed in range(3):
         s = skeleton_of(crossed(0, 90, seed))

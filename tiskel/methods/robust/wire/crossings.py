@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
-from tiskel.arrays import Indices, Points
+from tiskel.arrays import TINY, Indices, Mask, Points
 from tiskel.geometry.graph import component_labels
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.wire.links import Links
@@ -37,21 +37,44 @@ class Crossing:
 
 
 def parted(links: Links, points: Points, found: list[Crossing]) -> Links:
-    """Return the links without those that lead from one strand of a crossing to the other."""
-    kept = np.ones(len(links.first), bool)
+    """Return the links without those that lead from one strand of a crossing to the other.
+
+    A scan may have a gap where wires pass each other, so that links lead over it by way of the other wire alone: along
+    each strand there is one over its widest gap.
+    """
+    kept, added = np.ones(len(links.first), bool), set[tuple[int, int]]()
     for crossing in found:
-        strand = _strands(points, crossing, ABOUT * links.spacing)
+        strand, place = _strands(points, crossing, ABOUT * links.spacing)
         first, second = strand[links.first], strand[links.second]
         kept &= (first == 0) | (second == 0) | (first == second)
-    return replace(links, first=links.first[kept], second=links.second[kept], lengths=links.lengths[kept])
+        added |= {pair for side in (1, -1) for pair in _over_gap(strand == side, place)}
+    first, second, lengths = links.first[kept], links.second[kept], links.lengths[kept]
+    new = np.array(sorted(added - set(zip(first.tolist(), second.tolist(), strict=True))), np.int32).reshape(-1, 2)
+    apart = np.maximum(np.linalg.norm(points[new[:, 0]] - points[new[:, 1]], axis=1), TINY)
+    return replace(
+        links, first=np.concatenate([first, new[:, 0]]), second=np.concatenate([second, new[:, 1]]),
+        lengths=np.concatenate([lengths, apart]),
+    )  # fmt: skip
 
 
-def _strands(points: Points, crossing: Crossing, reach: float) -> Indices:
-    """Return (n,) the strand that each point is on, 1 or -1; 0 where it is near to neither."""
-    one, other = (
-        cKDTree(strand).query(points, distance_upper_bound=reach)[0] for strand in (crossing.one, crossing.other)
+def _strands(points: Points, crossing: Crossing, reach: float) -> tuple[Indices, Indices]:
+    """Return (n,) the strand that each point is on, 1 or -1, 0 where it is near to neither, and where along it."""
+    (one, along_one), (other, along_other) = (
+        cKDTree(strand).query(points, distance_upper_bound=reach) for strand in (crossing.one, crossing.other)
     )
-    return np.where(np.isinf(np.minimum(one, other)), 0, np.where(one <= other, 1, -1))
+    strand = np.where(np.isinf(np.minimum(one, other)), 0, np.where(one <= other, 1, -1))
+    return strand, np.where(strand > 0, along_one, along_other)
+
+
+def _over_gap(on: Mask, place: Indices) -> list[tuple[int, int]]:
+    """Return the two points of a strand (n,) at the sides of its widest gap, both ways; places (n,) are along it."""
+    rows = np.flatnonzero(on)
+    if len(rows) < 2:
+        return []
+    rows = rows[np.argsort(place[rows], kind="stable")]
+    gap = int(np.diff(place[rows]).argmax())
+    one, other = int(rows[gap]), int(rows[gap + 1])
+    return [(one, other), (other, one)]
 
 
 def crossings_of(curve: ConeCurve, spacing: float) -> list[Crossing]:
