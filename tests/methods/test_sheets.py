@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from tiskel import RadiusSource, RobustParams, Skeleton, contract, extract_skeleton
+from tiskel import (
+    RadiusSource,
+    RobustParams,
+    ShapeParams,
+    Skeleton,
+    contract,
+    extract_skeleton,
+    make_shape,
+    named_shape,
+)
 from tiskel.arrays import Points
 from tiskel.geometry.curve import curve_samples
 from tiskel.geometry.regime import Regime
@@ -110,3 +119,10 @@ def test_a_tight_cycle_is_contracted_and_a_real_loop_is_not() -> None:
     np.testing.assert_allclose(tight.nodes[0], 0, atol=1e-9)
     np.testing.assert_array_equal(tight.node_of_section, [*[0] * 8, 1, -1])
     assert (loop.loops, len(loop.nodes)) == (1, 9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_stem_goes_on_beside_a_leaf(seed: int) -> None:
+    """The cones of a leaf, as thick as it is wide, hold the tip of the stem; it is six of its own radii long."""
+    made = extract_skeleton(contract(make_shape(named_shape("seedling"), ShapeParams(seed=seed))[0]))
+    assert (made.components, made.loops, made.ends) == (1, 0, 5)

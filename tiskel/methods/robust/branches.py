@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tiskel.arrays import TINY, Indices, Numbers, Points
+from tiskel.arrays import TINY, Indices, Mask, Numbers, Points
 from tiskel.geometry.graph import connected_sets, node_radii
 from tiskel.methods.robust.axes import line_centres
 from tiskel.methods.robust.curve import ConeCurve, contract_nodes, with_nodes, without_path
@@ -19,6 +19,7 @@ BARELY = 1.0  # radii of its junction that a branch reaches from there at least,
 CONTAINED = 1.15  # radii of a node: balls within so much are part of its ball [0, 10]
 STICKS_OUT_SPACINGS = 1.5  # spacings that a branch sticks out of the rest at least [1, 0]
 FARTHEST = 0.98  # quantile of the distances of a branch's points that says how far it sticks out [2, 1]
+SLENDER = 3.0  # radii in the length of a branch, from which on a sheet beside it does not explain it [seedlings 3.9]
 HANGING = 1.3  # radii of a branch's end in which points of the junction are the branch's [0, 0; decides on noisy mugs]
 TIP_SHARE = 0.05  # share of the points ahead of an end, the farthest, whose mean is its tip [1, 2]
 TIP_LEAST = 3  # points that are such a share at least; fewer have no tip [1, 1]
@@ -72,7 +73,7 @@ def without_contained_ends(curve: ConeCurve, slack: float = 0.0) -> ConeCurve:
 
 
 def without_explained_branches(
-    curve: ConeCurve, network: Network, sections: Sections, least: float
+    curve: ConeCurve, network: Network, sections: Sections, least: float, sheet: Mask | None = None
 ) -> ConeCurve | None:  # fmt: skip
     """Contract the branches that stick out too little of what the rest of the curve explains; None where all do enough.
 
@@ -83,7 +84,7 @@ def without_explained_branches(
     degree = curve.degrees
     paths = [path for path in curve.paths_from(ends=True) if degree[path[-1]] > 2]
     branches = []
-    for path, out in zip(paths, _protrusions(curve, network.points, sections, paths), strict=True):
+    for path, out in zip(paths, _protrusions(curve, network.points, sections, paths, sheet), strict=True):
         radius = min(float(curve.radii[path[:-1]].max()), float(curve.radii[path[-1]]))
         share = out / max(least * radius, STICKS_OUT_SPACINGS * network.spacing)
         if share < 1:
@@ -104,11 +105,13 @@ def _rows_of_nodes(owner: Indices, count: int) -> tuple[Indices, Indices]:
     return order, np.searchsorted(owner[order], np.arange(count + 1)).astype(np.int32)
 
 
-def _protrusions(curve: ConeCurve, points: Points, sections: Sections, paths: list[Indices]) -> list[float]:
+def _protrusions(
+    curve: ConeCurve, points: Points, sections: Sections, paths: list[Indices], sheet: Mask | None
+) -> list[float]:
     """Return how far the points of each branch lie from the surface of the rest, 0 where it has none."""
     order, stops = _rows_of_nodes(curve.node_of_section[sections.section], len(curve.nodes))
     own = [_own_rows(curve, points, [order[stops[node] : stops[node + 1]] for node in path], path) for path in paths]
-    rest = [_possible(curve, path, points[rows]) for path, rows in zip(paths, own, strict=True)]
+    rest = [_possible(curve, path, points[rows], sheet) for path, rows in zip(paths, own, strict=True)]
     out = [np.inf if len(rows) else 0.0 for rows in own]
     asked = [i for i in range(len(paths)) if len(own[i]) and len(rest[i])]
     for some in np.array_split(asked, -(-len(asked) // BRANCHES)) if asked else []:
@@ -131,9 +134,12 @@ def _own_rows(curve: ConeCurve, points: Points, own: list[Indices], path: Indice
     return np.sort(np.concatenate([*own[:-1], at_joint[near]]))
 
 
-def _possible(curve: ConeCurve, path: Indices, points: Points) -> Indices:
+def _possible(curve: ConeCurve, path: Indices, points: Points, sheet: Mask | None) -> Indices:
     """Return the edges off a path whose cones may be the deepest about some points (n, 3): no other is for any."""
     there = np.ones(len(curve.nodes), np.bool_)
+    slender = curve.along(path)[-1] >= SLENDER * curve.radii[path[:-1]].max()
+    if sheet is not None and slender and not sheet[path[:-1]].any():
+        there &= ~sheet
     there[path[:-1]] = False
     edges: Indices = np.flatnonzero(there[curve.edges].all(axis=1)).astype(np.int32)
     if not len(points) or not len(edges):

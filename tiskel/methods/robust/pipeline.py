@@ -19,6 +19,7 @@ from tiskel.methods.robust.junctions import merged_junctions, placed_junctions
 from tiskel.methods.robust.network import Network
 from tiskel.methods.robust.pieces import joined_pieces
 from tiskel.methods.robust.sections import section_graph
+from tiskel.methods.robust.sheets import sheet_nodes
 from tiskel.methods.trace import Sections
 from tiskel.params import RobustParams
 from tiskel.progress import SILENT, Span
@@ -53,10 +54,14 @@ def fitted_curve(
     # Now that nodes are where they should be: cycles without a hole, branches that explain nothing.
     curve = without_filled_cycles(found.curve, network, sections, solid, fitted=True)
     if len(curve.nodes) < len(found.curve.nodes):
-        curve = fit(curve, again).curve
-    while (fewer := without_explained_branches(curve, network, sections, params.least_branch)) is not None:
-        curve = fit(fewer, again).curve
-    found = fit(placed_junctions(curve, solid), again)  # now that the branches are known
+        found = fit(curve, again)
+    least, points = params.least_branch, network.points
+    while True:
+        fewer = without_explained_branches(found.curve, network, sections, least, sheet_nodes(found, points))
+        if fewer is None:
+            break
+        found = fit(fewer, again)
+    found = fit(placed_junctions(found.curve, solid), again)  # now that the branches are known
     span.at(0.8, "ends")
     for _ in range(params.grow_ends):
         longer = with_tips(found, network, sections)

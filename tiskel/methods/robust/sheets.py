@@ -19,7 +19,7 @@ from tiskel.geometry.regime import Regime
 from tiskel.methods.robust.checks import Candidate
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.cycles import without_tight_cycles
-from tiskel.methods.robust.fit import feet_of_own
+from tiskel.methods.robust.fit import ConeFit, feet_of_own
 
 # Found by trial on leaves, plants, fronts of bodies and pipes of which a third was seen.
 TURN = np.radians(105)  # of the turn about a node that its points cover; less is a sheet, a third of a pipe 120 degrees
@@ -42,9 +42,9 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
     if not len(curve.edges) or (curve.regimes != Regime.UNKNOWN).any():
         return found
     points, owner = found.network.points[fit.rows], fit.nodes
-    offset, sheet = _sheets(found)
+    offset, sheet = _sheets(fit, found.network.points)
     if sheet.mean() > MOSTLY:
-        sheet = _sheets(found, np.pi)[1]
+        sheet = _sheets(fit, found.network.points, np.pi)[1]
     if seen_from is not None:
         sheet |= _seen_through(points, offset, owner, len(curve.nodes), found.network.placed(seen_from))
     if not sheet.any():
@@ -58,16 +58,21 @@ def on_sheets(found: Candidate, seen_from: tuple[float, float, float] | None) ->
 
 def flat_share(found: Candidate) -> float:
     """Return the share of the nodes of a candidate that lie on sheets."""
-    return float(_sheets(found)[1].mean()) if len(found.curve.edges) else 0.0
+    return float(sheet_nodes(found.fit, found.network.points).mean()) if len(found.curve.edges) else 0.0
 
 
-def _sheets(found: Candidate, wider: float = WIDER) -> tuple[Points, Mask]:
+def sheet_nodes(fit: ConeFit, points: Points) -> Mask:
+    """Return (v,) which nodes of a curve that was fitted to points (n, 3) are on sheets."""
+    return _sheets(fit, points)[1]
+
+
+def _sheets(fit: ConeFit, points: Points, wider: float = WIDER) -> tuple[Points, Mask]:
     """Return the offsets (p, 3) of the points across the curve, and which nodes are on sheets.
 
     wider is the turn below which points that are no circle are a sheet.
     """
-    curve, fit = found.curve, found.fit
-    offset = _across(curve, found.network.points[fit.rows] - curve.nodes[fit.nodes], fit.nodes)
+    curve = fit.curve
+    offset = _across(curve, points[fit.rows] - curve.nodes[fit.nodes], fit.nodes)
     turns, circle = _turns(offset, fit.nodes, len(curve.nodes)), _roundness(offset, fit.nodes, len(curve.nodes))
     return offset, _agreed(curve, (turns < TURN) | ((turns < wider) & (circle < CIRCLE)))
 
