@@ -10,6 +10,7 @@ from tiskel.geometry.regime import Regime
 from tiskel.geometry.ways import on_loops, steps_of, ways_from
 from tiskel.methods.robust import levels
 from tiskel.methods.robust.judged import Judged, doubt, severity
+from tiskel.methods.robust.treelike import CROWN
 
 
 def touching_ends(graph: CurveGraph, spacing: float) -> Indices:
@@ -35,7 +36,7 @@ def contacts(j: Judged) -> CurveWarning | None:
     if wires and graph.loops >= levels.NET and (each := graph.length / graph.loops / j.spacing) < levels.MESH:
         text = f"{graph.loops} loops of wire, one for {each:.0f} spacings of it: wires side by side may run together"
         return CurveWarning("contacts", text, share=1.0)
-    if graph.ends >= levels.CROWN and 0 < graph.loops <= levels.SELDOM * graph.ends:
+    if graph.ends >= CROWN and 0 < graph.loops <= levels.SELDOM * graph.ends:
         text = f"{graph.loops} loops in a crown of {graph.ends} ends: limbs that touch may run together"
         return doubt("contacts", text, graph.loops / graph.ends, graph.nodes[on_loops(graph)])
     ends = touching_ends(graph, j.spacing)

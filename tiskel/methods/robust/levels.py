@@ -29,7 +29,7 @@ MOSTLY = 0.5  # of the flat points: from there on it is known that they are a sh
 MOST = 0.9  # of the flat points, whose distance from their node is half a width
 LONG = 3.0  # widths that a flat body is long at least, to have a middle line [straps and flat tubes from 4; plates 2]
 TO_AND_FRO = 1.5  # extents of a flat body, from which on a curve runs along its rims rather than its middle
-INSIDE = 0.9  # of the points behind which is an inside: with fewer a tube may be none
+INSIDE = 0.9  # of the points behind which is an inside: with fewer a tube may be none [right smooth tubes from 0.93]
 TUBES = 0.75  # of the nodes on tubes that are thick, from which on a body has to have an inside
 # Spacings that points are beside the planes of the nearest ones, up to which a cloud is smooth [bundles of strands 0.14
 # to 0.46; noise that hides the inside from 0.51, which says nothing against the curve].
@@ -39,7 +39,7 @@ BRIDGED_SHARE = 0.2  # of the length over gaps: from there on it is more guess t
 LEFT_OUT_SHARE = 0.05  # of the points: from there on they are no dust
 ONE_SIDED_SHARE = 0.2  # of the nodes with points on one side only
 # Of the turn about tubes without points, in radians, and of the length of the curve that has so much of it: from there
-# on what was seen says too little of the middle [true curves of which 30 % of the surface is missing to 0.4].
+# on what was seen says too little of the middle [right curves of shapes that lack 30 % of their surface have less].
 EMPTY, EMPTY_SHARE = 2 * np.pi / 3, 0.9
 THIN_SHARE = 0.05  # of the nodes whose radius is a bound
 OPEN_SHARE = 0.1  # of the ends that face another part over a gap: below it a crown lacks a twig or two
@@ -49,7 +49,6 @@ APART_RADII = 4.0  # the same in the sum of the radii at both
 CONTACTS = 0.1  # of the ends that lie at another part: from there on it is told
 CONTACTS_SERIOUS = 0.4  # from there on limbs may be cut and joined wrongly, where points are noisy:
 NOISY = 0.45  # spacings that points lie from the cones, root mean square, from which on noise says which limbs touch
-CROWN = 15  # ends of a body from which on its loops may be limbs that touch
-SELDOM = 0.1  # loops for each end of it, at most [networks and stents have more loops than ends]
+SELDOM = 0.1  # loops for each end of a crown, up to which they may be limbs that touch [networks have more than ends]
 NET = 10  # loops of wires, from which on they may be chance: ways from one wire to the next beside it
 MESH = 80.0  # spacings of length for each such loop, below which they are taken for that [coils 46, stents from 172]
