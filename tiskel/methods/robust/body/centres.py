@@ -39,11 +39,16 @@ def centred(curve: ConeCurve, body: Body, reach: float = REACH) -> ConeCurve:
 
 
 def not_round(curve: ConeCurve, body: Body) -> Mask:
-    """Return (v,) which nodes no ball can be fitted at: in the balls of joints, and where the section is not round."""
+    """Return (v,) which nodes no ball can be fitted at: in the balls of joints, where the section is not round, and ends.
+
+    The ends of limbs whose last section is not round, that is.
+    """
     triples = curve.passages
     rows = triples[:, 1]
     out = curve.degrees > 2
     out[rows] = ~free(curve, rows) | (_section(curve.nodes, triples, body, REACH)[1] > WIDE)
+    for tip in np.flatnonzero(curve.degrees == 1).tolist():
+        out[tip] = out[curve.neighbours[tip][0]]
     return out
 
 
