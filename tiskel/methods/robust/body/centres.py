@@ -39,9 +39,9 @@ def centred(curve: ConeCurve, body: Body, reach: float = REACH) -> ConeCurve:
 
 
 def not_round(curve: ConeCurve, body: Body) -> Mask:
-    """Return (v,) which nodes no ball can be fitted at: in the balls of joints, where the section is not round, and ends.
+    """Return (v,) which nodes no ball can be fitted at: in the balls of joints, and where the section is not round.
 
-    The ends of limbs whose last section is not round, that is.
+    That of an end is taken for the one before it.
     """
     triples = curve.passages
     rows = triples[:, 1]
