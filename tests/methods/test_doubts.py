@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from reference.judged import codes, dense, judged, true
 from tiskel import (
     CurveGraph,
     CurveWarning,
@@ -19,51 +20,12 @@ from tiskel import (
 from tiskel.arrays import Points
 from tiskel.gallery.trees import tree
 from tiskel.geometry.doubt import UNKNOWN, warning_from
-from tiskel.geometry.graph import tidy_edges
 from tiskel.geometry.radius import RadiusSource
 from tiskel.geometry.regime import Regime
 from tiskel.geometry.round_cones import sample_union
-from tiskel.geometry.solid import solid_of
-from tiskel.methods.robust.contacts import contacts
 from tiskel.methods.robust.doubts import doubts_of
 from tiskel.methods.robust.judged import Judged
-from tiskel.methods.robust.network import prepared
 from tiskel.methods.robust.turning import roughness
-
-
-def dense(graph: CurveGraph, step: float = 0.1) -> CurveGraph:
-    """Return a curve with nodes a step apart."""
-    nodes, radii, edges = list(graph.nodes), list(graph.radii), []
-    for (a, b), length in zip(graph.edges.tolist(), graph.lengths.tolist(), strict=True):
-        cuts = np.linspace(0, 1, max(1, round(length / step)) + 1)[1:-1]
-        chain = [a, *range(len(nodes), len(nodes) + len(cuts)), b]
-        nodes += [(1 - t) * graph.nodes[a] + t * graph.nodes[b] for t in cuts]
-        radii += [(1 - t) * graph.radii[a] + t * graph.radii[b] for t in cuts]
-        edges += list(zip(chain[:-1], chain[1:], strict=True))
-    return CurveGraph(np.array(nodes), tidy_edges(np.array(edges, np.int32)), np.array(radii))
-
-
-def judged(cloud: Points, graph: CurveGraph) -> Judged:
-    """Return a curve with a cloud, each point of which contracts to its node."""
-    network = prepared(cloud, 14)
-    node = np.linalg.norm(cloud[:, None] - graph.nodes, axis=2).argmin(axis=1).astype(np.int32)
-    solid = solid_of(network.oriented(graph.nodes[node] @ network.axes.T))
-    return Judged(
-        graph=graph, points=cloud, normals=network.normals @ network.axes, spacings=network.spacings,
-        node_of_point=node, contracted=graph.nodes[node], left_out=np.zeros(len(cloud), bool), solid=solid,
-        axes=network.axes,
-    )  # fmt: skip
-
-
-def true(name: str, **sampling: float) -> Judged:
-    shape = shape_graph(name)
-    cloud = make_shape(shape, ShapeParams(**{"count": 3000, **sampling}))[0]  # type: ignore[arg-type]
-    return judged(cloud, dense(shape))
-
-
-def codes(j: Judged) -> dict[str, str]:
-    """Return the severity of each doubt by its code."""
-    return {doubt.code: doubt.severity for doubt in doubts_of(j)}
 
 
 @pytest.mark.parametrize("name", ["y", "torus", "mug", "ladder", "hand", "banana"])
@@ -255,35 +217,6 @@ def test_the_axis_of_a_pipe_of_which_a_third_is_not_seen_is_a_guess(degrees: flo
     links = np.stack([np.arange(29), np.arange(1, 30)], axis=1).astype(np.int32)
     axis = CurveGraph(nodes, links, np.ones(30), regimes=np.full(30, Regime.TUBE, np.uint8))
     assert codes(judged(pipe, axis)).get("one-sided") == told
-
-
-def comb(loops: int) -> CurveGraph:
-    """Return a trunk with twenty twigs that bend back to it, the last ones as far as that they join it."""
-    nodes, edges = [[float(x), 0.0, 0.0] for x in range(21)], [(x, x + 1) for x in range(20)]
-    for x in range(20):
-        first = len(nodes)
-        nodes += [[x, 0, 2], [x + 0.5, 0, 2], [x + 0.5, 0, 0.1]]
-        edges += [(x, first), (first, first + 1), (first + 1, first + 2)]
-        edges += [(x + 1, first + 2)] if x >= 20 - loops else []
-    return CurveGraph(np.array(nodes, float), tidy_edges(np.array(edges, np.int32)), np.full(len(nodes), 0.1))
-
-
-def test_ends_at_other_limbs_are_a_warning_where_points_are_noisy() -> None:
-    y = true("y")
-    crown = replace(y, graph=comb(0), spacings=np.full(len(y.points), 0.2))
-    for beside, severity in ((0.2, "note"), (0.6, "warning")):
-        found = contacts(replace(crown, beside=beside))
-        assert found is not None
-        assert (found.severity, found.share > 0.9) == (severity, True)
-
-
-def test_a_loop_in_a_crown_is_told_and_many_are_a_net() -> None:
-    y = true("y")
-    found = contacts(replace(y, graph=comb(1), spacings=np.full(len(y.points), 0.01)))
-    assert found is not None
-    assert found.severity == "warning"
-    assert found.text.startswith("1 loops in a crown of 19 ends")
-    assert contacts(replace(y, graph=comb(4), spacings=np.full(len(y.points), 0.001))) is None
 
 
 def test_no_sheet_is_thick_and_thickness_is_in_the_spacing_about_a_place() -> None:

@@ -125,7 +125,7 @@ class Candidate:
 
     @property
     def beside(self) -> float:
-        """How far points are from the cones, root mean square, in spacings, each as far as is told at most."""
+        """How far points are from the cones, root mean square, in spacings, the furthest cut."""
         off = np.minimum(np.abs(self.fit.residual) / max(self.network.spacing, TINY), FARTHEST)
         return float(np.sqrt((off**2).mean())) if len(off) else 0.0
 

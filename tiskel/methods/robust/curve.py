@@ -47,6 +47,10 @@ class ConeCurve(CurveGraph):
         share = 1 / np.maximum(self.degrees, 1)[first]
         return sparse.coo_array((share, (first, second)), shape=(len(self.nodes), len(self.nodes))).tocsr()
 
+    def halfway(self, nodes: Points, chosen: Mask) -> Points:
+        """Return nodes (v, 3), those chosen (v,) half the way to the mean of their neighbours."""
+        return np.asarray(np.where(chosen[:, None], (nodes + self.averaging @ nodes) / 2, nodes))
+
     @cached_property
     def directions(self) -> Points:
         """(v, 3) the direction of the curve at every node, either way: that of the edges there, the longest first."""

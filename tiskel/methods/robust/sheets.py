@@ -148,9 +148,9 @@ def _middles(found: Candidate, offset: Points, sheets: Indices) -> tuple[Points,
         middle = offset[rows].mean(axis=0)
         nodes[node] = curve.nodes[node] + middle
         radii[node] = max(float(np.quantile(np.linalg.norm(offset[rows] - middle, axis=1), WIDTH)), TINY)
-    inner = sheets[curve.degrees[sheets] == 2]
+    inner = np.isin(np.arange(len(nodes)), sheets) & (curve.degrees == 2)
     for _ in range(EVENED):
-        nodes[inner] = ((nodes + curve.averaging @ nodes) / 2)[inner]
+        nodes = curve.halfway(nodes, inner)
     return _laid(found, nodes, radii, sheets), radii
 
 

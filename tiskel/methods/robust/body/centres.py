@@ -30,7 +30,7 @@ def centred(curve: ConeCurve, body: Body, reach: float = REACH) -> ConeCurve:
     triples = triples[free(curve, triples[:, 1])]
     nodes, inner = curve.nodes, curve.degrees > 1
     for _ in range(ROUNDS):
-        nodes = _kept(nodes, np.where(inner[:, None], (nodes + curve.averaging @ nodes) / 2, nodes), body)
+        nodes = _kept(nodes, curve.halfway(nodes, inner), body)
         middles = nodes.copy()
         middles[triples[:, 1]] = _section(nodes, triples, body, reach)[0]
         nodes = _kept(nodes, middles, body)

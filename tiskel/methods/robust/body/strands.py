@@ -74,7 +74,7 @@ def evened(curve: ConeCurve, body: Body, sizes: Numbers | None = None) -> ConeCu
     """Return the curve without the steps of the grid, nodes a part of their radius apart, or of other sizes (v,)."""
     nodes, degree = curve.nodes, curve.degrees
     for _ in range(EVENED):
-        nodes = np.where((degree > 1)[:, None], (nodes + curve.averaging @ nodes) / 2, nodes)
+        nodes = curve.halfway(nodes, degree > 1)
     curve, sizes = replace(curve, nodes=nodes), curve.radii if sizes is None else sizes
     links = [link for branch in curve.branches for link in _links(curve, branch, sizes, APART_CELLS * body.step)]
     edges = np.array(links, np.int32).reshape(-1, 2)

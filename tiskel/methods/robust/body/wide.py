@@ -55,8 +55,11 @@ def _without_offshoots(curve: ConeCurve, widths: Numbers) -> tuple[ConeCurve, Nu
         others = [width for limb, width in limbs if limb[0] == path[-1] and limb[1] != path[-2]]
         if len(others) == 2 and curve.along(path)[-1] < min(others):
             into[path[:-1]] = path[-1]
-    kept = into == np.arange(len(into))
-    return contract_nodes(curve, into), widths[kept]
+    return _contracted(curve, widths, into)
+
+
+def _contracted(curve: ConeCurve, widths: Numbers, into: Indices) -> tuple[ConeCurve, Numbers]:
+    return contract_nodes(curve, into), widths[into == np.arange(len(into))]
 
 
 def _wide_limbs(curve: ConeCurve, widths: Numbers) -> list[tuple[Indices, float]]:
@@ -64,7 +67,7 @@ def _wide_limbs(curve: ConeCurve, widths: Numbers) -> list[tuple[Indices, float]
     found = []
     for path in curve.paths_from(ends=True):
         wide = widths[path] > curve.radii[path]
-        if wide.mean() > MOSTLY:
+        if wide.any():  # then most of it is
             found.append((path, float(np.median(widths[path[wide]]))))
     return found
 
@@ -76,8 +79,7 @@ def _without_corners(curve: ConeCurve, widths: Numbers) -> tuple[ConeCurve, Numb
         last = int(np.searchsorted(curve.along(path), width))
         if 2 * last <= len(path) - LEAST:
             into[path[:last]] = path[last]
-    kept = into == np.arange(len(into))
-    return contract_nodes(curve, into), widths[kept]
+    return _contracted(curve, widths, into)
 
 
 def _with_ends(curve: ConeCurve, body: Body) -> ConeCurve:

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from tiskel.arrays import TINY, Indices, Mask, Points
-from tiskel.geometry.graph import component_labels
+from tiskel.geometry.graph import component_labels, edge_keys
 from tiskel.methods.robust.curve import ConeCurve
 from tiskel.methods.robust.wire.links import Links
 
@@ -49,7 +49,8 @@ def parted(links: Links, points: Points, found: list[Crossing]) -> Links:
         kept &= (first == 0) | (second == 0) | (first == second)
         added |= {pair for side in (1, -1) for pair in _over_gap(strand == side, place)}
     first, second, lengths = links.first[kept], links.second[kept], links.lengths[kept]
-    new = np.array(sorted(added - set(zip(first.tolist(), second.tolist(), strict=True))), np.int32).reshape(-1, 2)
+    new = np.array(sorted(added), np.int32).reshape(-1, 2)
+    new = new[~np.isin(edge_keys(new), edge_keys(np.stack([first, second], axis=1)))]
     apart = np.maximum(np.linalg.norm(points[new[:, 0]] - points[new[:, 1]], axis=1), TINY)
     return replace(
         links, first=np.concatenate([first, new[:, 0]]), second=np.concatenate([second, new[:, 1]]),
